@@ -106,7 +106,7 @@ std::int64_t air_time_ns(std::int64_t stamp_ns) {
   return stamp_ns > now_ns - kTrustNs && stamp_ns < now_ns + kTrustNs ? stamp_ns : now_ns;
 }
 
-Bytes Air::receive(SteadyTime deadline, int other_fd) {
+Bytes Air::receive(SteadyTime deadline, const Others& others) {
   while (true) {
     SocketAddress from;
     from.size_bytes = sizeof from.storage;
@@ -133,9 +133,9 @@ Bytes Air::receive(SteadyTime deadline, int other_fd) {
     if (now >= deadline) return {};
     const auto left = std::min(deadline, next_greeting_) - now;
     const auto left_ms = std::chrono::ceil<Milliseconds>(left).count();
-    pollfd both[] = {{socket_.get(), POLLIN, 0}, {other_fd, POLLIN, 0}};
-    ::poll(both, 2, static_cast<int>(std::clamp<std::int64_t>(left_ms, 0, 1000)));
-    if (both[1].revents != 0) return {};
+    pollfd inputs[] = {{socket_.get(), POLLIN, 0}, {others[0], POLLIN, 0}, {others[1], POLLIN, 0}};
+    ::poll(inputs, 3, static_cast<int>(std::clamp<std::int64_t>(left_ms, 0, 1000)));
+    if (inputs[1].revents != 0 || inputs[2].revents != 0) return {};
   }
 }
 

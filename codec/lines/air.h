@@ -1,6 +1,7 @@
 // A virtual air: ZEP datagrams between all who take part at a UDP port. (decision 11)
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -26,9 +27,11 @@ class Air {
 
   /// Sends a datagram to all others; throws Broken.
   void send(Bytes datagram);
+  /// Descriptors of a caller who waits for more than datagrams; -1: none.
+  using Others = std::array<int, 2>;
   /// Returns the next datagram, valid until the next call; nothing if the time is over first or
-  /// `other_fd` (-1: none) can be read. Throws Broken.
-  Bytes receive(SteadyTime deadline, int other_fd = -1);
+  /// one of `others` can be read. Throws Broken.
+  Bytes receive(SteadyTime deadline, const Others& others = {-1, -1});
 
  private:
   struct Peer {

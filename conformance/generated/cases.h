@@ -17,7 +17,7 @@ struct CaseUse {
 };
 
 /// By file, then as they stand there; each case once for a rule and a sign.
-inline constexpr std::array<CaseUse, 1991> kCaseUses{{
+inline constexpr std::array<CaseUse, 1998> kCaseUses{{
     {"again_j.call_after_a_failure", "conformance/cases/again_j.rtr", "J8-FAIL"_rule, false},
     {"again_j.call_after_a_failure", "conformance/cases/again_j.rtr", "J1-REQUEST"_rule, false},
     {"again_j.call_after_a_failure", "conformance/cases/again_j.rtr", "J8-RETRY"_rule, false},
@@ -492,6 +492,13 @@ inline constexpr std::array<CaseUse, 1991> kCaseUses{{
     {"j9.interleave", "conformance/cases/j9.rtr", "J6-ADD"_rule, false},
     {"j9.numbers_do_not_mix", "conformance/cases/j9.rtr", "J6-SEQ"_rule, true},
     {"j9.numbers_do_not_mix", "conformance/cases/j9.rtr", "J9-INTERLEAVE"_rule, true},
+    {"leaving.sink", "conformance/cases/leaving.rtr", "J3-REPLY"_rule, false},
+    {"leaving.sink", "conformance/cases/leaving.rtr", "J6-ADD"_rule, false},
+    {"leaving.sink", "conformance/cases/leaving.rtr", "J2-LISTED"_rule, true},
+    {"leaving.base_station", "conformance/cases/leaving.rtr", "T1-DELIVER"_rule, false},
+    {"leaving.never", "conformance/cases/leaving.rtr", "J3-REPLY"_rule, false},
+    {"leaving.never", "conformance/cases/leaving.rtr", "J6-ADD"_rule, false},
+    {"leaving.never", "conformance/cases/leaving.rtr", "J2-LISTED"_rule, true},
     {"j4.cut_reply_seq", "conformance/cases/more_cut.rtr", "J4-SEQ"_rule, true},
     {"j4.cut_reply_seq", "conformance/cases/more_cut.rtr", "J4-ACK"_rule, false},
     {"j4.cut_reply_island", "conformance/cases/more_cut.rtr", "J4-SEQ"_rule, true},

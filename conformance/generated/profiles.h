@@ -41,6 +41,7 @@ inline constexpr Profile kDeployed{
     .synaptic_phase_ticks = 30,
     .response_ticks = 300,
     .early_ticks = 30,
+    .gone_after_ticks = 0,
 };
 inline constexpr std::array<AcceptedDifference, 9> kDeployedAccepted{{
     {"J3-TIME"_rule,
@@ -79,6 +80,7 @@ inline constexpr Profile kPaper{
     .synaptic_phase_ticks = 30,
     .response_ticks = 300,
     .early_ticks = 30,
+    .gone_after_ticks = 0,
 };
 inline constexpr std::array<AcceptedDifference, 0> kPaperAccepted{};
 

@@ -87,8 +87,9 @@ using Call =
                  StartChannel, StopChannel, StartAllChannels, StopAllChannels, WriteOutput,
                  ReadInput, SetTimeStep, SetIslandId, GetClock>;
 
-enum class TimerKind : std::uint8_t { kJoin, kAck, kSynaptic };
-/// One of a node's timers: the join timer, the ack timeout of awaited message `index`, the clock.
+enum class TimerKind : std::uint8_t { kJoin, kAck, kSynaptic, kSilence };
+/// One of a node's timers: the join timer, the ack timeout of awaited message `index`, the clock,
+/// the silence of the mote that was heard longest ago.
 struct Timer {
   TimerKind kind = TimerKind::kJoin;
   std::uint8_t index = 0;
@@ -130,6 +131,10 @@ struct MoteJoined {
   Address address;
   Descriptor descriptor;
 };
+/// Nothing came from a mote for as long as the node states. (decision 124)
+struct MoteLeft {
+  Address address;
+};
 struct SendResult {
   std::uint16_t seq_num = kNoSeq;
 };
@@ -167,7 +172,8 @@ struct Clock {
   std::uint32_t ms = 0;
 };
 
-using Notice = std::variant<Joined, MoteJoined, SendResult, Received, AckReceived, SynDataReceived,
-                            ChannelResult, OperationResult, InputValue, InterfaceState, Clock>;
+using Notice =
+    std::variant<Joined, MoteJoined, MoteLeft, SendResult, Received, AckReceived, SynDataReceived,
+                 ChannelResult, OperationResult, InputValue, InterfaceState, Clock>;
 
 }  // namespace rubric::machine

@@ -43,6 +43,7 @@ void add(Hasher& hasher, const Profile& p) {
   hasher.add(p.join_requests_max, p.ack_join_max, p.members_max, p.sink_id);
   hasher.add(p.response_ticks, p.early_ticks, p.synaptic_phase_ticks,
              static_cast<std::uint16_t>(switches | unsigned{p.channels_max} << 8));
+  hasher.add(std::uint64_t{p.gone_after_ticks});
 }
 
 void add(Hasher& hasher, const Config& config) {
@@ -116,6 +117,8 @@ std::uint64_t hash_value(const State& state) {
   add(hasher, state.sink.members);
   add(hasher, state.sink.pending);
   add(hasher, state.sink.unreported);
+  hasher.add(std::uint64_t{state.present.size()});
+  for (const Presence& one : state.present) hasher.add(std::uint64_t{one.devid} << 32 | one.heard);
   hasher.add(std::uint64_t{state.awaited.size()});
   for (const Awaited& awaited : state.awaited) {
     hasher.add(awaited.dest, {awaited.seq_num, awaited.app_id});

@@ -288,6 +288,7 @@ void set_island(Node& node, std::uint16_t island) {
   //= does after it uses the new one.
   state.island = island;
   node.actions.followed("N9-SET"_rule);
+  if (changes) state.present.clear();
   if (!changes || node.config().role != Role::kSink) return;
   //= N9-MEMBERS: A sink whose island id changes forgets its members.
   state.sink.members.clear();

@@ -43,6 +43,15 @@ void hear(Node& node, const Frame& frame);
 /// Handles waiting frames when the application has time again. (N2)
 void handle_waiting(Node& node);
 
+// silence.cc
+
+/// Notes which mote a frame came from, if the node calls silent motes gone. (decision 124)
+void note_presence(Node& node, const Frame& frame);
+/// Returns when the mote that was heard longest ago is gone; there is one.
+Ticks silence_due(const State& state);
+/// Forgets the motes that are gone now, and tells the application.
+void end_silence(Node& node);
+
 // network.cc
 
 /// Sends a net_msg of this node's own; dest.pid may be kLocalPid. Returns its sequence number, or

@@ -25,6 +25,8 @@ struct Profile {
   std::uint8_t synaptic_phase_ticks = 30;     ///< (devid - 1) times this before a mote's clock.
   std::uint16_t response_ticks = 300;         ///< Time for a reply, an ack, a forward.
   std::uint8_t early_ticks = 30;              ///< How much a timer may seem early on the air.
+  /// A sink or base station calls a mote gone after so much silence; 0: never, as in both dialects.
+  std::uint32_t gone_after_ticks = 0;
 
   friend bool operator==(const Profile&, const Profile&) = default;
 };

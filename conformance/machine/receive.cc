@@ -89,7 +89,7 @@ bool is_known_type(Role role, Link link, std::uint8_t type) {
          (type == am::kJoin || type == am::kJoinReply || type == am::kAckJoin);
 }
 
-void handle(Node& node, const Frame& frame) {
+void handle_by_type(Node& node, const Frame& frame) {
   switch (frame.type) {
     case am::kNet: return hear_net_msg(node, frame.link, frame.payload);
     case am::kJoin: return hear_join_request(node, frame);
@@ -98,6 +98,11 @@ void handle(Node& node, const Frame& frame) {
     case am::kConfig: return hear_config(node, frame);
     default: return node.actions.ignored(ReqId::kNone);
   }
+}
+
+void handle(Node& node, const Frame& frame) {
+  handle_by_type(node, frame);
+  note_presence(node, frame);
 }
 
 // Returns whether the frame reaches the node: not if the line is off or the header names another

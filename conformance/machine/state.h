@@ -56,6 +56,13 @@ struct Admission {
   friend bool operator==(const Admission&, const Admission&) = default;
 };
 
+/// When something came last from a mote of the island; kept by nodes that call silent ones gone.
+struct Presence {
+  std::uint16_t devid = 0;
+  Ticks heard = 0;
+  friend bool operator==(const Presence&, const Presence&) = default;
+};
+
 /// A sink's part in joining.
 struct JoinSink {
   BoundedList<Admission, kMembersMax> members;
@@ -141,6 +148,7 @@ struct State {
   Sequence sequence;
   JoinMote join;
   JoinSink sink;
+  BoundedList<Presence, kMembersMax> present;
   BoundedList<Awaited, kAwaitedMax> awaited;
   Synaptic synaptic;
   Interface<4> radio;

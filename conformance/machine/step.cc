@@ -24,6 +24,7 @@ void timer_due(Node& node, Timer timer) {
       if (node.profile().ack_timeout_ticks == 0) return node.actions.ignored("T3-ONCE"_rule);
       return ack_timeout(node.state.awaited, timer.index, node.actions);
     case TimerKind::kSynaptic: return tick(node);
+    case TimerKind::kSilence: return end_silence(node);
   }
 }
 
@@ -99,8 +100,8 @@ void step(State& state, Ticks now, const Event& event, Actions& actions) {
   report_owed(node);
 }
 
-BoundedList<DueTimer, 2 + kAwaitedMax> timers(const State& state) {
-  BoundedList<DueTimer, 2 + kAwaitedMax> set;
+DueTimers timers(const State& state) {
+  DueTimers set;
   if (state.join.phase == JoinMote::Phase::kJoining) {
     set.push({state.join.due, {TimerKind::kJoin, 0}});
   }
@@ -111,6 +112,7 @@ BoundedList<DueTimer, 2 + kAwaitedMax> timers(const State& state) {
     }
   }
   if (state.synaptic.due != 0) set.push({state.synaptic.due, {TimerKind::kSynaptic, 0}});
+  if (!state.present.empty()) set.push({silence_due(state), {TimerKind::kSilence, 0}});
   return set;
 }
 

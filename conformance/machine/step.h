@@ -23,8 +23,10 @@ struct DueTimer {
   Ticks due = 0;
   Timer timer;
 };
-/// Returns all timers that are set: at most 1 + kAwaitedMax + 1, unordered.
-BoundedList<DueTimer, 2 + kAwaitedMax> timers(const State& state);
+/// Join timer, silence and synaptic clock, and the ack timeouts.
+using DueTimers = BoundedList<DueTimer, 3 + kAwaitedMax>;
+/// Returns all timers that are set, unordered.
+DueTimers timers(const State& state);
 
 /// Returns the own address now: pid 0 if a mote is not a member.
 Address own_address(const State& state);

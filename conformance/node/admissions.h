@@ -34,6 +34,9 @@ class Admissions {
   Admission* acknowledge(uint16_t devid, uint16_t seq_num);
   /// Returns the member whose report has waited longest, or null.
   Admission* owed();
+  bool lists(uint16_t devid);
+  /// Takes a mote off the list; returns false while its report is owed.
+  bool forget(uint16_t devid);
 
  private:
   Admission* find(uint16_t devid);
@@ -52,6 +55,20 @@ inline Admission* Admissions::find(uint16_t devid) {
     if (entries_[i].devid == devid) return &entries_[i];
   }
   return nullptr;
+}
+
+inline bool Admissions::lists(uint16_t devid) {
+  const Admission* const entry = find(devid);
+  return entry != nullptr && entry->state != Admission::State::kPending;
+}
+
+inline bool Admissions::forget(uint16_t devid) {
+  if (!lists(devid)) return true;
+  Admission* const entry = find(devid);
+  if (entry->state == Admission::State::kOwed) return false;
+  --members_;
+  erase(static_cast<uint8_t>(entry - entries_));
+  return true;
 }
 
 inline void Admissions::erase(uint8_t i) {

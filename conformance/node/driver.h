@@ -28,6 +28,8 @@ class Application {
   virtual void joined(Address own, bool success) = 0;
   /// A sink has a new member.
   virtual void mote_joined(Address mote, const Descriptor& descriptor) = 0;
+  /// Nothing came from a mote for a stated time; only with Silence.
+  virtual void mote_left(Address) {}
   /// `data` is valid until this returns.
   virtual void received(Address src, uint8_t app_id, Bytes data) = 0;
   virtual void ack_received(uint8_t app_id, uint16_t seq_num, bool success) = 0;

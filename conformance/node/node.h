@@ -107,6 +107,11 @@ class Node {
   }
   /// Returns milliseconds; for a member the clock of its island.
   uint32_t clock_ms() const { return time_ms() + clock_offset_ms_; }
+  /// Returns whether a sink lists the mote.
+  bool lists(uint16_t devid) { return admissions_.lists(devid); }
+  /// Takes a mote that has left off a sink's list, as no message says goodbye; see silence.h.
+  /// Returns false while its report to the base station is owed.
+  bool forget(uint16_t devid) { return admissions_.forget(devid); }
   /// While busy, arrivals wait in the incoming buffers.
   void set_application_busy(bool busy);
   Address address() const;

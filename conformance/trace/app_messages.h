@@ -98,6 +98,7 @@ constexpr AppField kSetIslandId[] = {
 // Events.
 constexpr AppField kJoined[] = {kAddress, kSuccess};
 constexpr AppField kMoteJoined[] = {kAddress, kType, kTransducers, kActuators};
+constexpr AppField kMoteLeft[] = {kAddress};
 constexpr AppField kSendResult[] = {kSeqNum};
 constexpr AppField kReceived[] = {kSrc, kAppId, kData};
 constexpr AppField kAckReceived[] = {kAppId, kSeqNum, kSuccess};
@@ -143,6 +144,7 @@ constexpr AppMessage kAppMessages[] = {
     app::message("get_clock", AppWhat::kCall),
     app::message("joined", AppWhat::kEvent, app::kJoined),
     app::message("mote_joined", AppWhat::kEvent, app::kMoteJoined),
+    app::message("mote_left", AppWhat::kEvent, app::kMoteLeft),
     app::message("send_result", AppWhat::kEvent, app::kSendResult),
     app::message("received", AppWhat::kEvent, app::kReceived),
     app::message("ack_received", AppWhat::kEvent, app::kAckReceived),

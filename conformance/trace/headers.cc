@@ -36,8 +36,26 @@ std::string contradiction(const StatedRange& wanted, const Stated& stated) {
          " is stated";
 }
 
+// Returns a number of ticks which the case does not outlast.
+std::int64_t longest(const Case& one, const Statement& statement) {
+  constexpr std::int64_t kUnstated = 1500;  // The most of any parameter that is not stated.
+  const std::int64_t most = parameter(ParameterId::kGoneAfter).max;
+  std::int64_t out = 0;
+  for (const Line* const line : one.lines()) {
+    std::int64_t ticks = std::clamp<std::int64_t>(line->time.to, 0, most);
+    for (const Term& term : line->time.to_terms) {
+      const std::int64_t* const value = find(statement, term.parameter);
+      const std::int64_t factor = std::clamp<std::int64_t>(term.factor, 0, most);
+      ticks = std::min(most, ticks + factor * (value ? std::min(*value, most) : kUnstated));
+    }
+    out = std::min(most, out + ticks);
+  }
+  return out;
+}
+
 // Returns what one node contradicts.
-std::string contradiction(const Case& one, const NodeHeader& node, const Stated& stated) {
+std::string contradiction(const Case& one, const NodeHeader& node, const Stated& stated,
+                          const Statement& statement) {
   if (const std::int64_t* const said = find(node.stated, stated.id)) {
     return contradiction({stated.id, *said, *said}, stated);
   }
@@ -47,6 +65,8 @@ std::string contradiction(const Case& one, const NodeHeader& node, const Stated&
                       channels_created(one, node.name, "create_in"));
   } else if (stated.id == ParameterId::kMembers && node.role == Role::kSink) {
     needed = motes_joined(one);
+  } else if (stated.id == ParameterId::kGoneAfter && node.role != Role::kMote) {
+    needed = longest(one, statement);  // Its motes stay, however silent they are.
   }
   return contradiction({stated.id, needed, parameter(stated.id).max}, stated);
 }
@@ -72,7 +92,7 @@ std::string state(File& file, Case& one, const Statement& statement) {
     auto* const node = header ? std::get_if<NodeHeader>(&header->what) : nullptr;
     if (!node || !node->iut) continue;
     for (const Stated& each : statement) {
-      if (wrong.empty()) wrong = contradiction(one, *node, each);
+      if (wrong.empty()) wrong = contradiction(one, *node, each, statement);
     }
     node->stated = joined(std::move(node->stated), statement);
     if (node->role == Role::kBaseStation) {  // It has no channels.

@@ -9,9 +9,10 @@ namespace rubric::trace {
 namespace {
 
 constexpr std::int64_t kTicksMax = 0xFFFF;
+constexpr std::int64_t kDayTicks = 24 * 60 * 60 * 1024;
 
 // Decisions of spec/decisions, less their 0.
-constexpr std::array<Parameter, 10> kParameters{{
+constexpr std::array<Parameter, 11> kParameters{{
     {ParameterId::kResponse, "response", "ticks", 1, 1500, 125,
      "How long a reply, an ack or a forward may take."},
     {ParameterId::kJoinPeriod, "join_period", "ticks", 1, kTicksMax, 133,
@@ -31,6 +32,8 @@ constexpr std::array<Parameter, 10> kParameters{{
      "Period of the synaptic clock until set_time_step."},
     {ParameterId::kSynapticPhase, "synaptic_phase", "ticks", 0, 255, 121,
      "A mote's synaptic clock starts (devid - 1) times this late."},
+    {ParameterId::kGoneAfter, "gone_after", "ticks", 1, kDayTicks, 124,
+     "Silence after which a sink or base station calls a mote gone; unstated: never."},
 }};
 
 }  // namespace

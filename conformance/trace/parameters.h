@@ -21,6 +21,7 @@ enum class ParameterId : std::uint8_t {
   kChannels,
   kSynapticPeriod,
   kSynapticPhase,
+  kGoneAfter,
 };
 
 struct Parameter {

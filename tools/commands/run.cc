@@ -19,6 +19,7 @@
 #include "tools/cli/text_file.h"
 #include "tools/cli/write_options.h"
 #include "tools/commands/commands.h"
+#include "tools/commands/proxy/proxy.h"
 #include "tools/commands/run/islands.h"
 #include "tools/commands/run/json_application.h"
 #include "tools/commands/run/mote_application.h"
@@ -50,10 +51,13 @@ struct RunOptions {
   std::string credentials;
   std::uint32_t gone_after_s = 0;
   bool home_assistant = false;
+  std::uint64_t listen = 0;
+  std::string network;
 
   bool is_mote() const { return role == "mote"; }
   bool is_sink() const { return role == "sink"; }
-  bool is_base_station() const { return role == "base-station"; }
+  bool is_proxy() const { return role == "proxy"; }
+  bool is_base_station() const { return role == "base-station" || is_proxy(); }
   machine::Descriptor descriptor() const {
     machine::Descriptor out;
     out.mote_type = run::mote_type_of(type);
@@ -67,9 +71,10 @@ constexpr const char* kRunFooter =
     "The nodes of a virtual air may start in any order; the first at a port passes frames on to "
     "the\n"
     "others. Watch it with 'rubric decode zep:17754' or Wireshark.\n"
-    "Events come on stdout as JSON lines: joined, mote_joined, received, ack_received, syn_data. "
-    "With\n"
-    "--app - calls are read from stdin, and its end ends the run; see 'rubric run' in the book.\n"
+    "Events come on stdout as JSON lines: joined, mote_joined, mote_left, received, ack_received,\n"
+    "syn_data. With --app - calls are read from stdin, and its end ends the run; see 'rubric run' "
+    "in\n"
+    "the book.\n"
     "Examples:\n"
     "  rubric run sink --island 11 --serial sf-server:9002\n"
     "  rubric run base-station --island 11 --sink sf@localhost:9002\n"
@@ -93,6 +98,7 @@ run::StationSetup setup_of(const RunOptions& options) {
   setup.loss = options.loss_percent / 100.0;
   setup.seed = static_cast<std::uint32_t>(options.seed.value_or(std::random_device{}()));
   setup.offered = options.serial;
+  setup.gone_after_s = options.gone_after_s;
   setup.air = lines::parse_address(options.radio)->at;
   if (setup.role == node::Role::kBaseStation) setup.to = lines::required_address(options.sink);
   return setup;
@@ -105,6 +111,17 @@ void open_files(const RunOptions& options, const std::vector<trace::NodeHeader>&
                         cli::rotation_of(options.write));
   }
   if (!options.log.empty()) keeper.open_log(options.log, options.write.growing(), nodes, seed);
+}
+
+// Reads lines:HOST:PORT.
+std::optional<lines::HostPort> lines_network(const std::string& text) {
+  constexpr std::string_view kBegin = "lines:";
+  if (!text.starts_with(kBegin)) return std::nullopt;
+  try {
+    return lines::read_host_port(text.substr(kBegin.size()));
+  } catch (const std::invalid_argument&) {
+    return std::nullopt;
+  }
 }
 
 int run_station(const RunOptions& options) {
@@ -136,6 +153,13 @@ int run_station(const RunOptions& options) {
         settings, space::open_mqtt(options.space, options.credentials, setup.island));
     station.add(*gateway);
     station.join_peers(*gateway);
+  }
+  std::optional<proxy::Proxy> proxy;
+  if (options.is_proxy()) {
+    proxy.emplace(setup.island, static_cast<std::uint16_t>(options.listen));
+    if (!options.network.empty()) proxy->add_lines(*lines_network(options.network));
+    report::print(stderr, "rubric: proxy at 127.0.0.1:{}\n", proxy->port());
+    station.add(*proxy);
   }
   station.run(lines::stop_requested);
   return keeper.finish() ? cli::kExitClean : cli::kExitInput;
@@ -184,7 +208,16 @@ void check_run(const RunOptions& options) {
   if (mote && options.island)
     throw cli::UsageError("--island", "a mote gets its island by joining");
   if (!sink && !options.serial.empty()) throw cli::UsageError("--serial", "only a sink has one");
+  if (!options.is_proxy() && !options.network.empty()) {
+    throw cli::UsageError("--network", "is a proxy's");
+  }
+  if (options.is_proxy() && options.app == "-") {
+    throw cli::UsageError("--app", "programs reach a proxy at its port");
+  }
   if (!mote && options.app == "demo") throw cli::UsageError("--app", "the demo is a mote's");
+  if (mote && options.gone_after_s != 0) {
+    throw cli::UsageError("--gone-after", "is a sink's or base station's");
+  }
   if (!options.is_base_station() && !options.space.empty()) {
     throw cli::UsageError("--space", "is a base station's");
   }
@@ -218,10 +251,11 @@ int run_node(const RunOptions& options) {
 }
 
 std::string is_role(const std::string& text) {
-  for (const char* role : {"mote", "sink", "base-station"}) {
+  for (const char* role : {"mote", "sink", "base-station", "proxy"}) {
     if (text == role) return {};
   }
-  return is_file(text) ? "" : "'" + text + "': expected mote, sink, base-station or FILE.yaml";
+  return is_file(text) ? ""
+                       : "'" + text + "': expected mote, sink, base-station, proxy or FILE.yaml";
 }
 
 std::string is_space(const std::string& text) {
@@ -252,6 +286,10 @@ std::string is_serial(const std::string& text) {
                                               : "'" + text + "': expected sf-server:PORT or pty";
 }
 
+std::string is_network(const std::string& text) {
+  return lines_network(text) ? "" : "'" + text + "': expected lines:HOST:PORT";
+}
+
 std::string is_line(const std::string& text) {
   try {
     lines::required_address(text);
@@ -268,8 +306,9 @@ void add_run(cli::Command& app) {
   cli::Command& sub = app.add_subcommand("run", "Run a mote, a sink or a base station on this PC");
   sub.footer(kRunFooter);
   sub.add_option("WHAT", options->role,
-                 "mote, sink or base-station; or FILE.yaml: islands with all that is in them")
-      .check(is_role, "mote|sink|base-station|FILE.yaml")
+                 "mote, sink or base-station; proxy: a base station that others subscribe at; or "
+                 "FILE.yaml: islands with all that is in them")
+      .check(is_role, "mote|sink|base-station|proxy|FILE.yaml")
       .required();
   sub.add_option("--id", options->id, "Id of a mote, from 2 to 65532");
   sub.add_option("--island", options->island, "Island of a sink or base station").between(0, 65532);
@@ -313,10 +352,19 @@ void add_run(cli::Command& app) {
       .check(cli::given);
   sub.add_option(
          "--gone-after", options->gone_after_s,
-         "Call a mote offline in the space when nothing was heard of it for so many seconds; "
-         "0: never")
+         "A sink or base station: say mote_left of a mote that was silent for so many seconds; a "
+         "sink then lets it join anew, in the space it is offline; 0: never")
       .between(0, 86'400)
       .show_default();
+  sub.add_option(
+         "--listen", options->listen,
+         "A proxy's port, at which programs of this host subscribe by JSON lines; 0: a free "
+         "one, which is said on stderr")
+      .between(0, 65'535)
+      .show_default();
+  sub.add_option("--network", options->network,
+                 "A second network behind a proxy, by lines of words at this port, as of KNX")
+      .check(is_network, "lines:HOST:PORT");
   sub.add_option("--log", options->log, "Write what the nodes were given and did to this .rtr file")
       .check(cli::given);
   sub.exit_code_of([options] { return run_node(*options); });

@@ -224,6 +224,7 @@ class Space(LiveTest):
                          and list(payload["data"]) == ["light"], "light alone")
         # The mote has gone, and then the base station, without a word.
         mote.process.kill()
+        subscriber.event(event="mote_left", mote="11:5")
         subscriber.state("rubicon/11/motes/5/availability", "offline")
         base.process.kill()
         self.assertEqual(subscriber.state("rubicon/11/availability", "offline")[1],

@@ -7,6 +7,7 @@
 
 #include "conformance/adapters/cpp/words.h"
 #include "conformance/node/node.h"
+#include "conformance/node/silence.h"
 
 namespace rubric::cpp_node {
 namespace {
@@ -50,6 +51,7 @@ class Adapter : public Driver, public Application {
        std::to_string(description.transducers.raw()) + " " +
        std::to_string(description.actuators.raw()) + ")");
   }
+  void mote_left(Address mote) override { up("mote_left(" + text(mote) + ")"); }
   void received(Address src, std::uint8_t app_id, Bytes data) override {
     up("received(" + text(src) + " " + std::to_string(app_id) + " x" + hex_of(data) + ")");
   }
@@ -66,6 +68,7 @@ class Adapter : public Driver, public Application {
   std::string work(const std::vector<std::string>& words, Time time);
   void reset(const std::vector<std::string>& words);
   void start();
+  void hear(Line line, Bytes packet);
   void run();
   void pass(Time time, bool stop_at_output);
   void call(const std::string& text);
@@ -79,6 +82,8 @@ class Adapter : public Driver, public Application {
   std::string role_;
   Setup setup_{};
   std::optional<SizedNode<AnySizes>> node_;  // None while the power is off.
+  Ticks gone_after_ = 0;
+  Silence<AnySizes::kMembers> silence_;
   std::optional<Time> due_;
   std::map<Line, bool> taken_;  // By somebody else, whether the node has power or not.
   Time now_ = 0;
@@ -97,7 +102,7 @@ bool Adapter::answer(const std::string& line) {
 }
 
 // The parameters that `reset` may set.
-const std::string kSettings = " id island channels seed profile ";
+const std::string kSettings = " id island channels seed profile gone_after ";
 
 std::string Adapter::closing(const std::vector<std::string>& words) {
   if (words.size() == 2 && words[0] == "hello") {
@@ -128,7 +133,7 @@ std::string Adapter::work(const std::vector<std::string>& words, Time time) {
     if (node_) call(rest);
   } else if (command == "rx" && words.size() == 4) {
     const Data packet = bytes_of_hex(words[3]);
-    if (node_) node_->received(line_of(words[2]), Bytes(packet.data(), packet.size()));
+    if (node_) hear(line_of(words[2]), Bytes(packet.data(), packet.size()));
   } else if (command == "linkack" && words.size() == 3) {
     if (node_) node_->sent(Line::kRadio, words[2] == "1");
   } else if (command == "line" && words.size() == 4) {
@@ -156,6 +161,7 @@ void Adapter::reset(const std::vector<std::string>& words) {
   setup_.channels = arguments.number<std::uint8_t>("channels");
   const auto seed = arguments.number<std::uint64_t>("seed");
   setup_.last_seq_num = static_cast<std::uint16_t>(999 + 257 * seed);
+  gone_after_ = arguments.has("gone_after") ? arguments.number<Ticks>("gone_after") : 0;
   now_ = 0;
   taken_.clear();
   start();
@@ -165,7 +171,13 @@ void Adapter::start() {
   setup_.now = static_cast<Ticks>(now_);
   node_.emplace(*this, *this);
   node_->start(setup_);
+  silence_.start(gone_after_);
   for (const auto& [line, busy] : taken_) node_->set_busy(line, busy);
+}
+
+void Adapter::hear(Line line, Bytes packet) {
+  node_->received(line, packet);
+  silence_.received(*node_, setup_.role, line, packet, static_cast<Ticks>(now_));
 }
 
 // Does what is due now.
@@ -175,6 +187,10 @@ void Adapter::run() {
   const auto now = static_cast<Ticks>(now_);
   Ticks due = 0;
   if (node_->run(now, due)) due_ = now_ + (due - now);
+  if (silence_.run(*node_, *this, now, due)) {
+    const Time other = now_ + (due - now);
+    due_ = due_ ? std::min(*due_, other) : other;
+  }
 }
 
 // Lets time pass to `time`, or to the first instant at which the node writes something.

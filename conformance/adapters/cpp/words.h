@@ -70,6 +70,7 @@ class Arguments {
       if (equals != std::string::npos) values_[word.substr(0, equals)] = word.substr(equals + 1);
     }
   }
+  bool has(const std::string& name) const { return values_.count(name) > 0; }
   const std::string& text(const std::string& name) const {
     const auto found = values_.find(name);
     if (found == values_.end()) throw Unsupported("no argument " + name);

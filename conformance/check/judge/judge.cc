@@ -188,6 +188,7 @@ void Judge::joins_heard(std::uint32_t index, const Observation& seen, const Mark
 // Takes a reply. Motes whose log has what they were given hear nothing else.
 void Judge::replied(std::uint32_t index, const Observation& seen, const Mark& mark,
                     const Reply& reply) {
+  if (seen.received) sinks_.answered(seen.frame.dest, reply.seq_num);
   context_.for_motes(seen.frame.dest, [&](std::uint16_t mote) {
     const bool given = mark.receiver == mote;
     if (who_.devices[mote].hearing ? !given : seen.received) return;
@@ -253,6 +254,8 @@ void Judge::told(const Observation& seen, std::uint16_t device) {
     if (joined->success) synaptic_.member(device, seen.place.time_us);
   } else if (const auto* mote_joined = std::get_if<machine::MoteJoined>(seen.notice)) {
     if (is(device, Role::kSink)) sinks_.told(device, seen, *mote_joined);
+  } else if (const auto* mote_left = std::get_if<machine::MoteLeft>(seen.notice)) {
+    if (is(device, Role::kSink)) sinks_.forgot(device, mote_left->address.devid);
   } else if (const auto* received = std::get_if<machine::Received>(seen.notice)) {
     acks_.delivered(device, seen, *received);
   } else if (const auto* ack = std::get_if<machine::AckReceived>(seen.notice)) {

@@ -105,6 +105,30 @@ void take_list(const JoinSink& list, SinkHypothesis& h) {
   h.pending = list.pending.empty() ? std::nullopt : std::optional(list.pending[0]);
 }
 
+void SinkJoins::forgot(std::uint16_t sink, std::uint16_t mote_am) {
+  SinkWatch* const watch = find(sink);
+  if (watch == nullptr) return;
+  PairWatch& mote = pair(*watch, mote_am);
+  if (mote.report_due) --watch->debts;
+  mote.report_due = false;
+  next_.clear();
+  for (SinkHypothesis h : mote.set) {
+    h.unknown = h.owes_report = h.owes_notice = false;
+    h.member.reset();
+    next_.push_back(h);
+  }
+  keep(*watch, mote, next_, mote.ack);
+}
+
+void SinkJoins::doubt(const Device& sink, PairWatch& watch, const Place& now) const {
+  const std::uint32_t gone_after = context_.profile().gone_after_ticks;
+  if (gone_after == 0 || sink.application) return;
+  if (now.time_us - watch.ack.time_us < machine::us_of(gone_after)) return;
+  SinkHypothesis unknown;
+  unknown.unknown = true;
+  watch.set.push_back(unknown);
+}
+
 void SinkJoins::request(std::uint16_t mote_device, const Observation& seen, const Request& request,
                         std::uint16_t surely_received_by) {
   const std::uint16_t am = seen.frame.src;
@@ -118,6 +142,7 @@ void SinkJoins::request(std::uint16_t mote_device, const Observation& seen, cons
     const bool sure = surely_received_by == sink.device;
     if (!hears(device, seen, sure)) continue;
     PairWatch& watch = pair(sink, am);
+    doubt(device, watch, seen.place);
     const bool full = listed(sink) >= context_.profile().members_max;  // Then it may be silent.
     watch.request_listed = sure && std::all_of(watch.set.begin(), watch.set.end(),
                                                [](const auto& h) { return h.member.has_value(); });
@@ -149,6 +174,11 @@ void SinkJoins::request(std::uint16_t mote_device, const Observation& seen, cons
     watch.asked = true;
     keep(sink, watch, next_, seen.place);
   }
+}
+
+void SinkJoins::answered(std::uint16_t mote_am, std::uint16_t seq_num) {
+  const auto found = unanswered_.find(mote_am);
+  if (found != unanswered_.end() && found->second.seq_num == seq_num) found->second.open = false;
 }
 
 void SinkJoins::close_unanswered(std::uint16_t mote_am, Unanswered& unanswered) {

@@ -29,7 +29,9 @@
 // may be that of an older one; beyond kSetMax hypotheses the pair is inconclusive.
 //
 // Cannot know: what a sink stored before the capture began; which of several sinks of one address
-// sent a link ack; that a sink forgot a mote without a reboot or a new island that the run shows.
+// sent a link ack; that a sink forgot a mote without a reboot, a new island or a mote_left that the
+// run shows. Where gone_after is stated and no log tells, a sink may have forgotten a mote so long
+// after its ack_join (decision 124).
 //
 // Why an inconclusive finding is never a failure here: a reply or an announcement without its cause
 // has the severity of Context::without(), over the time in which the mote's request or ack_join may
@@ -119,6 +121,8 @@ class SinkJoins {
   void report(std::uint16_t sink, const Observation& seen, const Net& net,
               const SerialJoined& joined);
   void told(std::uint16_t sink, const Observation& seen, const machine::MoteJoined& joined);
+  /// Notes that the sink calls a mote gone, so that it lists it no more. (decision 124)
+  void forgot(std::uint16_t sink, std::uint16_t mote_am);
   /// Notes that the sink sent something at this time, so whatever it still owes is overdue.
   void showed_life(std::uint16_t sink, std::int64_t now_us, bool on_serial);
   /// Notes that the sink's serial line is switched on or off; while off, no report is due.
@@ -126,6 +130,9 @@ class SinkJoins {
   void finish(std::int64_t end_us);
   /// Notes that somebody else waits for the answer to the mote's last request.
   void settled(std::uint16_t mote_am) { unanswered_[mote_am].open = false; }
+
+  /// Notes that the mote was given a reply to this request, though no sink was seen to send it.
+  void answered(std::uint16_t mote_am, std::uint16_t seq_num);
 
   /// Returns the sink's island now; 0 if unknown.
   std::uint16_t island(std::uint16_t sink) const;
@@ -135,6 +142,8 @@ class SinkJoins {
   static constexpr std::size_t kSetMax = 256;
 
   PairWatch& pair(SinkWatch& sink, std::uint16_t mote_am);
+  /// Adds that the sink may have forgotten the mote, if so much silence was possible.
+  void doubt(const Device& sink, PairWatch& watch, const Place& now) const;
   void judge_clock(SinkWatch& sink, const Observation& seen, const Reply& reply);
   void refuse_reply(SinkWatch& sink, PairWatch& watch, const Observation& seen, const Reply& reply);
   void refuse_report(SinkWatch& sink, PairWatch& watch, const Place& at, std::uint16_t mote_am,

@@ -191,7 +191,11 @@ void Watched::check_labels(const Seen& seen) {
     const bool told = action.what == Action::What::kNotify;
     const bool sends = action.what == Action::What::kTransmit;
     const bool channel_of_base = told && called && config_.role == Role::kBaseStation;
-    must(!sends && (!told || channel_of_base), "Whatever a node does names its rule.", seen.now);
+    // Nor has a mote that left, where that is stated. (decision 124)
+    const bool left = told && config_.profile.gone_after_ticks != 0 &&
+                      std::holds_alternative<machine::MoteLeft>(seen.actions.notice_of(action));
+    must(!sends && (!told || channel_of_base || left), "Whatever a node does names its rule.",
+         seen.now);
     must(told || beyond, "Whatever a node ignores names its rule.", seen.now);
   }
   if (heard) must(!seen.actions.all().empty(), "No frame is taken without a word.", seen.now);
@@ -228,7 +232,7 @@ void Watched::check_bounds(const Seen& seen) {
   const State& s = seen.after;
   must(seen.now >= last_, "Time does not go back.", seen.now);
   const runner::DueTimers set = machine::timers(s);
-  must(set.size() <= 2 + machine::kAwaitedMax, "Timers are bounded.", seen.now);
+  must(set.size() <= 3 + machine::kAwaitedMax, "Timers are bounded.", seen.now);
   const bool joining = s.join.phase == machine::JoinMote::Phase::kJoining;
   bool join_timer = false;
   for (const machine::DueTimer& timer : set) {

@@ -6,7 +6,7 @@
 
 namespace rubric::source_mutants {
 
-using DueTimers = machine::BoundedList<machine::DueTimer, 2 + machine::kAwaitedMax>;
+using machine::DueTimers;
 
 struct MachineFunctions {
   void (*choose)(int mutant);

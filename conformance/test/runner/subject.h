@@ -9,7 +9,7 @@
 
 namespace rubric::runner {
 
-using DueTimers = machine::BoundedList<machine::DueTimer, 2 + machine::kAwaitedMax>;
+using machine::DueTimers;
 
 class Subject {
  public:

@@ -50,6 +50,7 @@ void visit(AnyProfile& profile, ParameterId id, Call call) {
     case ParameterId::kChannels: return call(profile.channels_max);
     case ParameterId::kSynapticPeriod: return call(profile.synaptic_period_ticks);
     case ParameterId::kSynapticPhase: return call(profile.synaptic_phase_ticks);
+    case ParameterId::kGoneAfter: return call(profile.gone_after_ticks);
   }
 }
 
@@ -182,6 +183,9 @@ struct NoticeWriter {
   Message operator()(const machine::MoteJoined& n) const {
     return Writer("mote_joined").address(n.address).descriptor(n.descriptor).take();
   }
+  Message operator()(const machine::MoteLeft& n) const {
+    return Writer("mote_left").address(n.address).take();
+  }
   Message operator()(const machine::SendResult& n) const {
     return Writer("send_result").number(n.seq_num).take();
   }
@@ -266,6 +270,7 @@ std::optional<machine::Notice> read_notice(Reader& in) {
     const Address address = in.address();
     return machine::MoteJoined{address, in.descriptor()};
   }
+  if (in.named("mote_left")) return machine::MoteLeft{in.address()};
   if (in.named("send_result")) return machine::SendResult{in.number<std::uint16_t>()};
   if (in.named("received")) {
     machine::Received out;

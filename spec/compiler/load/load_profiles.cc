@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::int64_t kU8 = 0xFF;
 constexpr std::int64_t kU16 = 0xFFFF;
+constexpr std::int64_t kDayTicks = 24 * 60 * 60 * 1024;
 constexpr std::array kFields{
     ProfileField{"ticks_per_second", 1, kU16, false},
     ProfileField{"join_period_ticks", 1, kU16, false},
@@ -30,6 +31,7 @@ constexpr std::array kFields{
     ProfileField{"synaptic_phase_ticks", 0, kU8, false},
     ProfileField{"response_ticks", 1, kU16, false},
     ProfileField{"early_ticks", 0, kU8, false},
+    ProfileField{"gone_after_ticks", 0, kDayTicks, false},
 };
 constexpr std::array<std::string_view, 4> kProfileKeys{"doc", "constants", "switches", "accepted"};
 

@@ -38,7 +38,7 @@ for file in profiles cases; do
   [ -f "$out/good/conformance/generated/$file.h" ] || { echo "no $file"; failures=1; }
 done
 expect 1 --check --profiles spec/compiler/test/bad/profiles $good
-grep -q 'profiles/not_a_switch.yaml:17:24: error: ' "$out/stderr" ||
+grep -q 'profiles/not_a_switch.yaml:18:24: error: ' "$out/stderr" ||
   { echo "profiles are not checked"; failures=1; }
 expect 1 --check --cases spec/compiler/test/bad/cases $good
 grep -q 'cases/no_name.rtr:4:1: error: ' "$out/stderr" ||

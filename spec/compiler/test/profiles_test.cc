@@ -22,10 +22,11 @@ using rubric::machine::kPaper;
 
 TEST(Profiles, HaveEveryMemberOfTheStruct) {
   // As many names as members, else this does not compile: then profile_fields() lacks one, too.
-  const auto [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o] = kPaper;
-  EXPECT_EQ(profile_fields().size(), 15U);
+  const auto [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p] = kPaper;
+  EXPECT_EQ(profile_fields().size(), 16U);
   EXPECT_EQ(a, 1024);
   EXPECT_EQ(o, 30);
+  EXPECT_EQ(p, 0U);
   for (const ProfileField& field : profile_fields()) {
     if (field.name == "members_max") {
       EXPECT_EQ(field.max, std::int64_t{rubric::machine::kMembersMax});

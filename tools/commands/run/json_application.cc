@@ -158,6 +158,9 @@ struct EventOf {
             {"transducers", it.descriptor.transducers},
             {"actuators", it.descriptor.actuators}};
   }
+  Json operator()(const machine::MoteLeft& it) const {
+    return {{"event", "mote_left"}, {"mote", text_of(it.address)}};
+  }
   Json operator()(const machine::SendResult& it) const {
     return {{"event", "send_result"},
             {"seq_num", it.seq_num},

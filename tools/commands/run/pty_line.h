@@ -24,6 +24,7 @@ class PtyLine : public lines::PacketLine {
   void close() override { is_open_ = false; }
   void send(const std::vector<std::uint8_t>& packet, lines::SteadyTime deadline) override;
   std::optional<lines::TimedPacket> receive(lines::SteadyTime deadline) override;
+  int fd() const override { return master_.get(); }
 
  private:
   void take(Bytes bytes);

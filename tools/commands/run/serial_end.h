@@ -31,6 +31,8 @@ class SerialEnd {
   std::vector<std::uint8_t> receive(lines::SteadyTime deadline);
   /// Returns the descriptor on which packets come, for poll(); -1 while there is none.
   int fd() const { return open_ ? line_->fd() : -1; }
+  /// Returns when open() tries again; the end of time while the line is open.
+  lines::SteadyTime next_try() const { return open_ ? lines::SteadyTime::max() : next_try_; }
 
  private:
   void lost(const std::string& why);

@@ -20,10 +20,12 @@ using node::Line;
 using std::chrono::milliseconds;
 using std::chrono::steady_clock;
 
-constexpr milliseconds kMoment{5};     // While there are lines to look at.
+constexpr milliseconds kMoment{5};     // Between looks at a tuple space.
 constexpr milliseconds kLongest{100};  // Until a stop is seen.
 
 machine::Link link_of(Line line) { return static_cast<machine::Link>(line); }
+
+node::Ticks gone_after(const StationSetup& setup) { return setup.gone_after_s * 1024; }
 
 // A packet as the machine's frame, which a log shows.
 machine::Frame frame_of(Line line, Bytes packet) {
@@ -54,6 +56,9 @@ trace::NodeHeader header_of(const StationSetup& setup) {
   header.iut = true;
   header.stated = {{trace::ParameterId::kResponse, kResponseTicks}};
   if (!base) header.stated.push_back({trace::ParameterId::kChannels, node::AnySizes::kChannels});
+  if (setup.gone_after_s != 0) {
+    header.stated.push_back({trace::ParameterId::kGoneAfter, gone_after(setup)});
+  }
   return header;
 }
 
@@ -110,7 +115,12 @@ lines::SteadyTime Station::catch_up() {
   const node::Ticks now = ticks();
   node::Ticks due = 0;
   ++depth_;
-  const bool runs = node_.run(now, due);
+  bool runs = node_.run(now, due);
+  node::Ticks gone = 0;
+  if (silence_.run(node_, *this, now, gone)) {
+    if (!runs || node::is_reached(gone, due)) due = gone;
+    runs = true;
+  }
   --depth_;
   if (!runs) return latest;
   const std::int64_t left_ticks = static_cast<std::int32_t>(due - now);
@@ -123,6 +133,7 @@ void Station::heard(Line line, Bytes packet) {
   keeper_.given(names_, machine::Heard{frame_of(line, packet)});
   ++depth_;
   node_.received(line, packet);
+  silence_.received(node_, setup_.role, line, packet, ticks());
   --depth_;
 }
 
@@ -164,6 +175,8 @@ void Station::mote_joined(node::Address mote, const node::Descriptor& descriptor
   happened(machine::MoteJoined{address_of(mote), descriptor_of(descriptor)});
 }
 
+void Station::mote_left(node::Address mote) { happened(machine::MoteLeft{address_of(mote)}); }
+
 void Station::received(node::Address src, std::uint8_t app_id, Bytes data) {
   happened(machine::Received{address_of(src), app_id, data});
 }
@@ -197,6 +210,7 @@ void Station::run(const std::function<bool()>& stop) {
   setup.slack = 1;
   setup.now = ticks();
   node_.start(setup);
+  silence_.start(gone_after(setup_));
   for (run::Application* application : applications_) application->start(*this);
   while (!stop() && !has_ended()) step();
   for (run::Application* application : applications_) application->stop(*this);
@@ -216,16 +230,19 @@ void Station::step() {
   }
   if (serial_) {
     if (serial_->open() && is_base_station()) call(machine::SetIslandId{setup_.island});
-    until = std::min(until, steady_clock::now() + kMoment);
+    until = std::min(until, serial_->next_try());
   }
   if (peers_ != nullptr) {
     peers_->receive([this](Bytes packet) { heard(Line::kPeis, packet); });
+    until = std::min(until, steady_clock::now() + kMoment);
   }
+  const int serial = serial_ ? serial_->fd() : -1;
   if (radio_) {
-    radio_->run(until, calls);
+    radio_->run(until, {calls, serial});
   } else {
-    pollfd inputs[] = {{calls, POLLIN, 0}, {serial_ ? serial_->fd() : -1, POLLIN, 0}};
-    ::poll(inputs, 2, static_cast<int>(kMoment.count()));
+    const auto left = std::chrono::ceil<milliseconds>(until - steady_clock::now()).count();
+    pollfd inputs[] = {{calls, POLLIN, 0}, {serial, POLLIN, 0}};
+    ::poll(inputs, 2, static_cast<int>(std::max<std::int64_t>(0, left)));
   }
   hear_serial();
   keeper_.settle();

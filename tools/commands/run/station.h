@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "conformance/node/node.h"
+#include "conformance/node/silence.h"
 #include "conformance/trace/trace.h"
 #include "tools/commands/run/application.h"
 #include "tools/commands/run/keeper.h"
@@ -27,6 +28,7 @@ struct StationSetup {
   std::uint32_t seed = 0;
   std::string offered;               ///< A sink's serial line: pty, sf-server:PORT; empty: none.
   std::optional<lines::Address> to;  ///< A base station's line to its sink.
+  std::uint32_t gone_after_s = 0;    ///< Silence after which a mote has left; 0: never.
   bool keeps = true;  ///< Whether it keeps the frames of its lines; not if another node there does.
 };
 
@@ -73,6 +75,7 @@ class Station final : private node::Driver, private node::Application, public Ca
   // node::Application
   void joined(node::Address own, bool success) override;
   void mote_joined(node::Address mote, const node::Descriptor& descriptor) override;
+  void mote_left(node::Address mote) override;
   void received(node::Address src, std::uint8_t app_id, Bytes data) override;
   void ack_received(std::uint8_t app_id, std::uint16_t seq_num, bool success) override;
   void syn_data_received(node::ChannelId channel, node::DataStatus status) override;
@@ -95,6 +98,7 @@ class Station final : private node::Driver, private node::Application, public Ca
   Keeper& keeper_;
   events::NodeNames names_;
   node::SizedNode<node::AnySizes> node_;
+  node::Silence<255> silence_;
   lines::SteadyTime started_;
   std::vector<run::Application*> applications_;
   Peers* peers_ = nullptr;

@@ -148,9 +148,9 @@ void VirtualRadio::handle(Bytes datagram) {
   user_.heard(Bytes(out.data(), out.size()));
 }
 
-void VirtualRadio::run(lines::SteadyTime deadline, int other_fd) {
+void VirtualRadio::run(lines::SteadyTime deadline, const lines::Air::Others& others) {
   const auto until = state_ == State::kIdle ? deadline : std::min(deadline, next_);
-  const Bytes datagram = air_.receive(until, other_fd);
+  const Bytes datagram = air_.receive(until, others);
   if (!datagram.empty()) handle(datagram);
   const auto now = steady_clock::now();
   if (state_ == State::kIdle || now < next_) return;

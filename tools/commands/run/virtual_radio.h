@@ -42,8 +42,8 @@ class VirtualRadio {
   /// Takes a packet from its dispatch byte on; `sent` is called before it takes another.
   void send(Bytes packet, bool link_ack);
   /// Receives and sends until the deadline, or for a moment after something happened, or until
-  /// `other_fd` can be read.
-  void run(lines::SteadyTime deadline, int other_fd);
+  /// one of `others` can be read.
+  void run(lines::SteadyTime deadline, const lines::Air::Others& others);
 
  private:
   enum class State : std::uint8_t { kIdle, kWaiting, kAwaitingAck };

@@ -85,6 +85,9 @@ void Gateway::happened(const machine::Notice& notice, run::Caller&) {
     }
   }
   put_event(run::json_line(notice, ""));
+  const auto* left = std::get_if<machine::MoteLeft>(&notice);
+  const auto gone = left ? members_.find(left->address.devid) : members_.end();
+  if (gone != members_.end()) set_online(gone->first, gone->second, false);
 }
 
 void Gateway::heard(const machine::Received& message) {
@@ -93,7 +96,7 @@ void Gateway::heard(const machine::Received& message) {
   if (members_.size() >= kMembersMax && !members_.contains(message.src.devid)) return;
   // One that joined before this base station began has no description, but takes wishes.
   Member& member = members_[message.src.devid];
-  member.heard = steady_clock::now();
+  member.awaited.reset();
   set_online(message.src.devid, member, true);
   const std::string state = state_data(member.mote, message.app_id, message.data);
   if (state.empty()) return;
@@ -135,7 +138,10 @@ lines::SteadyTime Gateway::run(run::Caller& caller) {
   if (now - said_ >= kSayEvery) say_rest();
   if (settings_.gone_after.count() == 0) return lines::SteadyTime::max();
   for (auto& [id, member] : members_) {
-    if (now - member.heard >= settings_.gone_after) set_online(id, member, false);
+    if (member.awaited && now - *member.awaited >= settings_.gone_after) {
+      member.awaited.reset();
+      set_online(id, member, false);
+    }
   }
   return now + std::min(settings_.gone_after, lines::Milliseconds(1000));
 }
@@ -151,7 +157,7 @@ void Gateway::take(const Tuple& tuple, run::Caller& caller) {
     Member member;
     const std::string wrong = parse_mote(tuple.data, member.mote);
     if (!wrong.empty()) return refuse(tuple.key, wrong);
-    member.heard = steady_clock::now();
+    member.awaited = steady_clock::now();
     members_[key->mote] = member;
     return announce(key->mote, member.mote);
   }

@@ -5,6 +5,7 @@
 #include <deque>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -41,8 +42,9 @@ class Gateway final : public run::Application, public run::Peers {
  private:
   struct Member {
     Mote mote;
-    bool online = false;
-    lines::SteadyTime heard;
+    std::optional<bool> online;  ///< As this run has written it.
+    /// Since when it is waited for after an earlier run; the node watches those that it has heard.
+    std::optional<lines::SteadyTime> awaited;
   };
   struct Awaited {
     std::uint16_t mote = 0;

@@ -1,0 +1,202 @@
+#!/usr/bin/env python3
+"""`rubric run proxy`: one access point over motes behind a sink and a network of lines.
+
+Usage: proxy_test.py RUBRIC PROJECT_FOLDER. All of it on this host's loopback.
+"""
+
+import json
+import re
+import select
+import socket
+import subprocess
+import sys
+import unittest
+
+from live_testing import ROOT, LiveTest, Running
+from serial_testing import PATIENCE_S
+
+HOME = ROOT / "conformance/node/examples/home_lines.py"
+MASKS = {"light": 1, "temp": 2}
+
+
+class Lines:
+    """Lines of a pipe or a socket, waited for with patience."""
+
+    def __init__(self, source):
+        self.source = source
+        self.rest = b""
+
+    def next(self):
+        while b"\n" not in self.rest:
+            if not select.select([self.source], [], [], PATIENCE_S)[0]:
+                raise AssertionError(f"nothing more after {self.rest}")
+            more = self.read()
+            if not more:
+                raise AssertionError(f"it ended with {self.rest}")
+            self.rest += more
+        line, self.rest = self.rest.split(b"\n", 1)
+        return line.decode()
+
+
+class Piped(Lines):
+    def read(self):
+        return self.source.read1(4096)
+
+
+class Client(Lines):
+    """A program that uses the proxy."""
+
+    def __init__(self, test, port):
+        super().__init__(socket.create_connection(("127.0.0.1", port)))
+        test.addCleanup(self.source.close)
+
+    def read(self):
+        return self.source.recv(4096)
+
+    def say(self, **what):
+        self.source.sendall(json.dumps(what).encode() + b"\n")
+
+    def event(self, event, **fields):
+        while True:
+            found = json.loads(self.next())
+            if found["event"] == event and fields.items() <= found.items():
+                return found
+            if found["event"] == "error":
+                raise AssertionError(found)
+
+
+class Mote(Running):
+    """A mote whose application is this test."""
+
+    def call(self, call, **arguments):
+        self.process.stdin.write(json.dumps({"call": call, **arguments}).encode() + b"\n")
+        self.process.stdin.flush()
+
+    def event(self, name):
+        while (event := self.lines(1)[0])["event"] != name:
+            pass
+        return event
+
+    def sampling(self):
+        """The period and the sensors that the next read_updates asks for."""
+        data = bytes.fromhex(self.event("received")["data"])
+        if len(data) != 5 or data[0] != 36:
+            raise AssertionError(data)
+        mask = int.from_bytes(data[3:], "big")
+        return int.from_bytes(data[1:3], "big"), {name for name, bit in MASKS.items() if mask & bit}
+
+    def joins(self, transducers):
+        self.call("join", type=1, transducers=transducers, actuators=2)
+        if not self.event("joined")["success"]:
+            raise AssertionError("not joined")
+
+
+class Proxy(LiveTest):
+    program = Mote
+
+    def waits_for(self, run, pattern):
+        err = b""
+        while not (found := re.search(pattern, err)):
+            if not select.select([run.process.stderr], [], [], PATIENCE_S)[0]:
+                raise AssertionError(err)
+            more = run.process.stderr.read1(4096)
+            if not more:
+                raise AssertionError(err)
+            err += more
+        return found
+
+    def setUp(self):
+        super().setUp()
+        self.home = subprocess.Popen([sys.executable, HOME], stdin=subprocess.PIPE,
+                                     stdout=subprocess.PIPE)
+        self.addCleanup(self.home.stdout.close)
+        self.addCleanup(self.home.wait)
+        self.addCleanup(self.home.kill)
+        self.addCleanup(self.home.stdin.close)
+        self.asked = Piped(self.home.stdout)
+        lines = self.asked.next()
+        self.sink = self.started("run", "sink", "--island", "11", "--radio", "zep:0", "--serial",
+                                 "sf-server:0", "--gone-after", "1")
+        found = self.waits_for(self.sink, rb"(zep:\d+)\n[^$]*sf-server:(\d+)\n")
+        self.air = found.group(1).decode()
+        self.proxy = self.started("run", "proxy", "--island", "11", "--sink",
+                                  f"sf@localhost:{found.group(2).decode()}", "--gone-after", "1",
+                                  "--network", f"lines:127.0.0.1:{lines}")
+        # A sink reports a new mote once, so its line must have a reader by then.
+        found = self.waits_for(self.proxy, rb"proxy at 127.0.0.1:(\d+)\n(?s:.*)sf@\S+: connected")
+        self.port = int(found.group(1))
+
+    def mote(self):
+        mote = self.started("run", "mote", "--id", "5", "--radio", self.air, "--app", "-",
+                            stdin=subprocess.PIPE)
+        mote.joins(3)
+        return mote
+
+    def test_subscriptions_configure_a_mote(self):
+        one, two = Client(self, self.port), Client(self, self.port)
+        # A device that is not there yet is read when it comes.
+        one.say(subscribe="11:5", sensors=["light"], period_ms=500)
+        one.say(subscribe="1/1/8", period_ms=10_000)
+        self.assertEqual(self.asked.next(), "watch 1/1/8 10000 state")
+        mote = self.mote()
+        self.assertEqual(one.event("device", device="11:5"),
+                         {"event": "device", "network": "motes", "device": "11:5",
+                          "sensors": ["light", "temp"], "actuators": ["open"]})
+        self.assertEqual(mote.sampling(), (500, {"light"}))
+        # The most eager one decides, and all sensors are read that anybody wants.
+        two.say(subscribe="11:5", sensors=["temp"], period_ms=200)
+        self.assertEqual(mote.sampling(), (200, {"light", "temp"}))
+        # updates: light 512, temp 6150.
+        mote.call("send", dest="11:65533", app_id=10, reliable=False,
+                  data="2302000102000002" + "1806")
+        for client in (one, two):
+            self.assertEqual(client.event("reading", device="11:5")["data"],
+                             {"light": {"raw": 512},
+                              "temp": {"raw": 6150, "value": 21.5, "unit": "degC"}})
+        # Whoever leaves, by a word or without, wants nothing more; the last one ends the readings.
+        two.say(unsubscribe="11:5")
+        self.assertEqual(mote.sampling(), (500, {"light"}))
+        one.source.close()
+        self.assertEqual(mote.sampling()[0], 0)
+        self.assertEqual(self.asked.next(), "watch 1/1/8 0")
+        two.say(command="OPEN_DOOR", device="11:5")
+        self.assertEqual(bytes.fromhex(mote.event("received")["data"]), b"OPEN_DOOR")
+        # A mote that went and came again is told anew.
+        two.say(subscribe="11:5", sensors=["light"], period_ms=300)
+        self.assertEqual(mote.sampling(), (300, {"light"}))
+        mote.process.kill()
+        two.event("left", device="11:5")
+        self.assertEqual(self.mote().sampling(), (300, {"light"}))
+        for node in (self.proxy, self.sink):
+            self.assertEqual(node.end()[0], 0)
+
+    def test_lines_are_a_network_like_any_other(self):
+        client = Client(self, self.port)
+        client.event("device", network="lines", device="1/1/7")
+        client.event("device", device="1/1/8")
+        client.say(subscribe="1/1/8", period_ms=20)
+        self.assertEqual(client.event("reading", device="1/1/8")["data"], {"state": {"value": 0.0}})
+        client.say(command="on", device="1/1/8")
+        while client.event("reading", device="1/1/8")["data"] != {"state": {"value": 1.0}}:
+            pass
+        self.home.stdin.write(b"there 1/1/9 switch\nvalue 1/1/9 switch nan\ngone 1/1/7\n")
+        self.home.stdin.flush()
+        client.event("device", device="1/1/9")
+        self.waits_for(self.proxy, rb"refused 'value 1/1/9 switch nan'")
+        client.event("left", device="1/1/7")
+        # What makes no sense is an error for who said it, and for nobody else.
+        other = Client(self, self.port)
+        for wrong in ("{", "[]", '{"subscribe":5}', '{"subscribe":"1/1/8","period_ms":0}', "{}",
+                      '{"command":"on","device":"1/1/7"}', '{"command":"ON !","device":"1/1/8"}'):
+            other.source.sendall(wrong.encode() + b"\n")
+            while (event := json.loads(other.next()))["event"] != "error":
+                self.assertEqual(event["event"], "device")
+        # The network is gone with its devices.
+        self.home.kill()
+        for device in ("1/1/8", "1/1/9"):
+            client.event("left", device=device)
+        self.assertEqual(self.proxy.end()[0], 0)
+
+
+if __name__ == "__main__":
+    unittest.main()
