@@ -16,8 +16,8 @@ import time
 import unittest
 
 from check_live_testing import (BROKEN_LINE, CLEAN_LINE, MANY, OPEN_LINE, SERIAL_TOO, STRAY_REPLY,
-                                TWO_TAPS, CheckTest, blocks, data, is_packet, of_findings, offline,
-                                stamped, standing, until_packet)
+                                TWO_TAPS, CheckTest, blocks, data, frames_in, is_packet, of_findings,
+                                offline, stamped, standing, until_packet)
 # pylint: disable-next=unused-import
 from live_testing import RUBRIC, Forwarder, Running, load_tests  # noqa: F401
 from serial_testing import PATIENCE_S, Pty, hdlc, holds
@@ -92,8 +92,8 @@ class CheckLive(CheckTest):
                 found = running.event("found")["finding"]
                 self.assertEqual(found["severity"], severity)
                 self.assertIn("What hosts send down its serial line", found["text"])
-            frames = offline(path)[1]["counts"]["frames"]
-            self.grown(kept, lambda: offline(kept)[1]["counts"]["frames"] > frames)
+            frames = frames_in(path)
+            self.grown(kept, lambda: frames_in(kept) > frames)
             code, report, err = running.report()
             self.assertEqual(err, "")
             self.assertEqual((code, report), offline(kept))
@@ -224,7 +224,7 @@ class CheckLive(CheckTest):
                 else:
                     os.write(line.fd, hdlc(block[28:28 + size - 2]))
         frames = len(packets)
-        self.grown(kept, lambda: offline(kept)[1]["counts"]["frames"] > 0)
+        self.grown(kept, lambda: frames_in(kept) > 0)
         code, report, err = running.report()
         self.assertEqual((code, report), offline(kept, sniffer), err)
         self.assertEqual(report["files"], [str(kept), str(sniffer)])

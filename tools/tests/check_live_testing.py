@@ -110,6 +110,12 @@ def offline(*arguments):
     return done.returncode, json.loads(done.stdout) if done.stdout else done.stderr
 
 
+def frames_in(path):
+    """Returns how many frames a capture holds: none while it is not there, or only begun."""
+    report = offline(path)[1]
+    return report["counts"]["frames"] if isinstance(report, dict) else 0
+
+
 def key(finding):
     return finding["file"], finding["frame"], finding["requirement"], finding["node"]
 
