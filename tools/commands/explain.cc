@@ -17,9 +17,9 @@
 #include "tools/cli/output.h"
 #include "tools/cli/specs.h"
 #include "tools/commands/commands.h"
-#include "tools/explain/explain_frame.h"
-#include "tools/explain/explain_rule.h"
-#include "tools/explain/type_text.h"
+#include "tools/commands/explain/explain_frame.h"
+#include "tools/commands/explain/explain_rule.h"
+#include "tools/commands/explain/type_text.h"
 
 namespace rubric::tools {
 namespace {

@@ -9,8 +9,8 @@
 #include "tools/cli/input.h"
 #include "tools/cli/output.h"
 #include "tools/commands/commands.h"
-#include "tools/explain/table.h"
-#include "tools/explain/type_text.h"
+#include "tools/commands/explain/table.h"
+#include "tools/commands/explain/type_text.h"
 
 namespace rubric::tools {
 namespace {

@@ -42,8 +42,8 @@ ALLOWED = {
     "tools/cli": ["codec", "tools/cli", "tools/format"],
     "tools/encode": ["codec", "tools/cli", "tools/encode", "tools/format"],
     "tools/format": ["codec", "tools/format"],
-    "tools/commands/stats/": ["codec", "tools/cli", "tools/commands/stats", "tools/explain",
-                              "tools/format"],
+    "tools/commands/stats/": ["codec", "tools/cli", "tools/commands/explain",
+                              "tools/commands/stats", "tools/format"],
     "tools/wireshark": ["codec", "tools/cli", "tools/format", "tools/wireshark"],
     "tools/commands/decode.cc": ["codec", "tools"],
     "tools": ["codec", "conformance", "tools"],
@@ -78,8 +78,8 @@ PRINTED = re.compile(r"\bfmt::print\((?!f)|\bstd::c(?:err|out)\b|\bf?puts\(.*\bs
 PRINTERS = ("codec/text/text.cc", "tools/cli/progress.cc", "tools/commands/completion.cc",
             "tools/commands/explore.cc", "tools/commands/main.cc",
             "tools/commands/run/json_application.cc", "tools/wireshark/extcap/main.cc")
-PRINTING = ("tools/cli", "tools/commands", "tools/encode", "tools/explain", "tools/format",
-            "tools/wireshark", "codec/lines", "conformance/check", "conformance/test")
+PRINTING = ("tools/cli", "tools/commands", "tools/encode", "tools/format", "tools/wireshark",
+            "codec/lines", "conformance/check", "conformance/test")
 # Where bytes are read by hand for a reason, besides tests, which state what they expect.
 HAND_MADE = {
     "codec/runtime/": "the loads and stores themselves, and the framing of serial lines",

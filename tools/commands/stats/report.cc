@@ -7,7 +7,7 @@
 
 #include "codec/reflect/fault_text.h"
 #include "codec/text/json.h"
-#include "tools/explain/table.h"
+#include "tools/commands/explain/table.h"
 #include "tools/format/put.h"
 
 namespace rubric::stats {

@@ -1,4 +1,4 @@
-#include "tools/explain/table.h"
+#include "tools/commands/explain/table.h"
 
 #include <algorithm>
 

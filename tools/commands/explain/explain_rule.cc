@@ -1,4 +1,4 @@
-#include "tools/explain/explain_rule.h"
+#include "tools/commands/explain/explain_rule.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "codec/reflect/fault_text.h"
-#include "tools/explain/table.h"
-#include "tools/explain/type_text.h"
+#include "tools/commands/explain/table.h"
+#include "tools/commands/explain/type_text.h"
 
 namespace rubric::explain {
 namespace {

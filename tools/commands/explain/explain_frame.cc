@@ -1,4 +1,4 @@
-#include "tools/explain/explain_frame.h"
+#include "tools/commands/explain/explain_frame.h"
 
 #include <fmt/format.h>
 
@@ -14,9 +14,9 @@
 #include "codec/reflect/fault_text.h"
 #include "codec/reflect/text_field.h"
 #include "codec/runtime/hdlc.h"
+#include "tools/commands/explain/table.h"
+#include "tools/commands/explain/type_text.h"
 #include "tools/encode/carriers.h"
-#include "tools/explain/table.h"
-#include "tools/explain/type_text.h"
 #include "tools/format/json_nodes.h"
 #include "tools/format/plain_value.h"
 #include "tools/format/record.h"

@@ -8,10 +8,10 @@
 #include "codec/reflect/encode.h"
 #include "codec/reflect/frame.h"
 #include "codec/reflect/registry.h"
-#include "tools/explain/explain_frame.h"
-#include "tools/explain/explain_rule.h"
-#include "tools/explain/table.h"
-#include "tools/explain/type_text.h"
+#include "tools/commands/explain/explain_frame.h"
+#include "tools/commands/explain/explain_rule.h"
+#include "tools/commands/explain/table.h"
+#include "tools/commands/explain/type_text.h"
 
 namespace rubric::explain {
 namespace {

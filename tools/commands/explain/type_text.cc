@@ -1,4 +1,4 @@
-#include "tools/explain/type_text.h"
+#include "tools/commands/explain/type_text.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -9,7 +9,7 @@
 
 #include "codec/reflect/decode.h"
 #include "codec/reflect/fault_text.h"
-#include "tools/explain/table.h"
+#include "tools/commands/explain/table.h"
 
 namespace rubric::explain {
 
