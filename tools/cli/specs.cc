@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <memory>
+#include <mutex>
+#include <utility>
 
 #include "codec/reflect/registry.h"
 #include "codec/reflect/requirements.h"
@@ -157,11 +159,20 @@ OtherSpecs::OtherSpecs(const reflect::Protocol& chosen) : chosen_(chosen) {
 }
 
 void OtherSpecs::look_closer(const reflect::Frame& frame) {
+  std::vector<Hint> hints;
+  look_closer(frame, hints);
+  for (const Hint& hint : hints) report::print(stderr, "{}", hint.text);
+}
+
+void OtherSpecs::look_closer(const reflect::Frame& frame, std::vector<Hint>& hints) {
   if (others_.empty()) {
+    static std::mutex reading;  // Read specs are kept in one place.
+    const std::lock_guard lock(reading);
     for (const std::string& name : protocol_names()) {
       if (name != kNone && name != chosen_.id) others_.emplace_back(protocol_of(name));
     }
   }
+  Hint hint{frame.am.present ? frame.am.type : -1, {}};
   for (const reflect::FrameDecoder& other : others_) {
     const std::string_view name = other.protocol().id;
     if (frame.am.present && !claims(other.protocol(), frame.am.type)) continue;
@@ -170,14 +181,15 @@ void OtherSpecs::look_closer(const reflect::Frame& frame) {
     if (tried.malformed() || tried.decoded.note_count() != 0) continue;
     if (!frame.am.present) {
       const char* message = tried.decoded.message() ? tried.decoded.message()->name : "frame";
-      report::print(stderr, "rubric: a {} fits {}: --spec {}\n", message, name, name);
+      hint.text = fmt::format("rubric: a {} fits {}: --spec {}\n", message, name, name);
       said_of_links_ = true;
-      return;
+      break;
     }
     const std::string_view also = claims(chosen_, frame.am.type) ? "also fits" : "fits";
-    report::print(stderr, "rubric: AM {} {} {}: --spec {}\n", frame.am.type, also, name, name);
+    hint.text += fmt::format("rubric: AM {} {} {}: --spec {}\n", frame.am.type, also, name, name);
     said_[frame.am.type] = true;
   }
+  if (!hint.text.empty()) hints.push_back(std::move(hint));
 }
 
 }  // namespace rubric::cli

@@ -43,21 +43,35 @@ const reflect::RouteTable* read_routes_of(const reflect::Protocol& protocol);
 /// Returns the dissector of the shipped specs and the one of this file.
 std::string dissector_with(const std::string& file);
 
-/// Says once for each AM type, and once for beacons and commands, on stderr which other spec fits a
-/// message that the chosen one does not fit wholly.
+/// Says once for each AM type, and once for beacons and commands, which other spec fits a message
+/// that the chosen one does not fit wholly.
 class OtherSpecs {
  public:
+  struct Hint {
+    int about = 0;     ///< An AM type, or -1: frames without an active message.
+    std::string text;  ///< Whole lines.
+  };
+
   explicit OtherSpecs(const reflect::Protocol& chosen);
 
+  /// Prints hints on stderr.
   void look(const reflect::Frame& frame) {
-    const bool fits = !frame.malformed() && frame.decoded.note_count() == 0;
-    if (fits) return;
-    const bool link = frame.packet->framing == Framing::kRadio;
-    if (frame.am.present ? !said_[frame.am.type] : link && !said_of_links_) look_closer(frame);
+    if (may_fit_others(frame)) look_closer(frame);
+  }
+  /// Adds a hint, if there is one. Several threads may do so, each by its own OtherSpecs.
+  void look(const reflect::Frame& frame, std::vector<Hint>& hints) {
+    if (may_fit_others(frame)) look_closer(frame, hints);
   }
 
  private:
+  bool may_fit_others(const reflect::Frame& frame) const {
+    const bool fits = !frame.malformed() && frame.decoded.note_count() == 0;
+    if (fits) return false;
+    const bool link = frame.packet->framing == Framing::kRadio;
+    return frame.am.present ? !said_[frame.am.type] : link && !said_of_links_;
+  }
   void look_closer(const reflect::Frame& frame);
+  void look_closer(const reflect::Frame& frame, std::vector<Hint>& hints);
 
   const reflect::Protocol& chosen_;
   std::vector<reflect::FrameDecoder> others_;  // Made when a first message does not fit.

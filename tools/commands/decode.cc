@@ -2,9 +2,14 @@
 
 #include <cstdint>
 #include <ctime>
+#include <filesystem>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
+#include <system_error>
+#include <thread>
+#include <utility>
 
 #include "codec/lines/capture_file.h"
 #include "codec/lines/line.h"
@@ -19,6 +24,7 @@
 #include "tools/cli/specs.h"
 #include "tools/cli/write_options.h"
 #include "tools/commands/commands.h"
+#include "tools/commands/decode_threads.h"
 #include "tools/format/csv.h"
 #include "tools/format/filter.h"
 #include "tools/format/jsonl.h"
@@ -28,6 +34,7 @@ namespace rubric::tools {
 namespace {
 
 constexpr std::int64_t kNoPrevious = kNoTime;
+constexpr std::uintmax_t kLongBytes = 64 * 1024 * 1024;  // Captures that all cores decode.
 
 struct DecodeOptions {
   cli::InputOptions input;
@@ -137,17 +144,67 @@ class Clock {
   std::int64_t reference_ns_ = kNoPrevious;
 };
 
+/// Decodes packets and prints them; each thread has its own.
+class FramePrinter {
+ public:
+  FramePrinter(const DecodeOptions& options, const reflect::Protocol& protocol)
+      : strict_(options.strict),
+        decoder_(protocol, cli::chosen_message(options.input, protocol)),
+        others_(protocol),
+        formatter_(make_formatter(options, protocol)),
+        filter_(make_filter(options, protocol)),
+        clock_(options.time) {}
+
+  void begin(format::Buffer& out) { formatter_->begin(out); }
+
+  void print(const Packet& packet, format::Record record, format::Buffer& out, DecodedPart& part) {
+    decoder_.decode(packet, frame_);
+    others_.look(frame_, part.hints);
+    const bool noted = strict_ && frame_.decoded.note_count() != 0;
+    ++part.frames;
+    part.malformed += frame_.malformed();
+    part.bad = part.bad || frame_.malformed() || noted;
+    record.frame = &frame_;
+    record.time_ns = packet.time_ns;
+    if (filter_ && !filter_->matches(record)) return;
+    record.time_ns = clock_.shown(packet.time_ns);
+    record.time_text = clock_.text_of(packet.time_ns);
+    formatter_->print(record, out);
+    ++part.shown;
+  }
+
+ private:
+  const bool strict_;
+  reflect::FrameDecoder decoder_;
+  cli::OtherSpecs others_;
+  std::unique_ptr<format::Formatter> formatter_;
+  std::optional<format::Filter> filter_;
+  Clock clock_;
+  reflect::Frame frame_;
+};
+
+// Returns how many threads decode the input; 1: it is done without others.
+std::size_t threads_for(const DecodeOptions& options) {
+  // What a line shows depends on the line before it, or on how many there are.
+  const bool in_line = options.count != 0 || options.time == "relative" || options.time == "delta";
+  if (in_line || !options.write.path.empty() || cli::goes_on(options.input)) return 1;
+  if (options.each.jobs != 0) return options.each.jobs;
+  std::uintmax_t bytes = 0;
+  for (const std::string& file : options.input.files) {
+    std::error_code ignored;
+    const std::uintmax_t size = std::filesystem::file_size(file, ignored);
+    if (!ignored) bytes += size;
+  }
+  return bytes < kLongBytes ? 1 : std::max(1U, std::thread::hardware_concurrency());
+}
+
 /// One run of the subcommand.
 class Decode {
  public:
   explicit Decode(const DecodeOptions& options)
       : options_(options),
         protocol_(cli::chosen_protocol(options.input)),
-        decoder_(protocol_, cli::chosen_message(options.input, protocol_)),
-        others_(protocol_),
-        formatter_(make_formatter(options, protocol_)),
-        filter_(make_filter(options, protocol_)),
-        clock_(options.time) {}
+        printer_(options, protocol_) {}
 
   int run() {
     if (!options_.write.path.empty()) {
@@ -157,65 +214,79 @@ class Decode {
                        grows ? options_.write.growing() : lines::CaptureFile::Mode::kWhole,
                        cli::rotation_of(options_.write));
     }
-    formatter_->begin(output_.buffer());
+    printer_.begin(output_.buffer());
+    if (const std::size_t count = threads_for(options_); count > 1) begin_threads(count);
     const cli::InputResult result = cli::read_packets(
         options_.input,
         [this](const Packet& packet, const cli::Source& source) { return take(packet, source); },
         [this] { output_.flush(); });
+    if (threads_) threads_->finish();
     const bool written = output_.finish();
     if (result.live) {
-      report::print(stderr, "rubric: {} frames, {} malformed, {} shown\n", index_, malformed_count_,
-                    printed_);
+      report::print(stderr, "rubric: {} frames, {} malformed, {} shown\n", sum_.frames,
+                    sum_.malformed, sum_.shown);
     }
     // A source that cannot be had costs no file.
     const bool kept = !capture_ || (result.failed && !capture_->is_started()) || capture_->finish();
     if (!written || !kept) return cli::kExitOutput;
     if (result.failed) return cli::kExitInput;
-    return malformed_ ? cli::kExitFindings : cli::kExitClean;
+    return sum_.bad ? cli::kExitFindings : cli::kExitClean;
   }
 
   // Returns the counts of what was read, as members of a JSON object.
   std::string counts() const {
-    return fmt::format(R"("frames":{},"malformed":{},"shown":{})", index_, malformed_count_,
-                       printed_);
+    return fmt::format(R"("frames":{},"malformed":{},"shown":{})", sum_.frames, sum_.malformed,
+                       sum_.shown);
   }
 
  private:
+  void begin_threads(std::size_t count) {
+    const auto make = [this]() -> DecodeThreads::Decode {
+      auto printer = std::make_shared<FramePrinter>(options_, protocol_);
+      return [printer](const Packet& packet, const format::Record& record, format::Buffer& out,
+                       DecodedPart& part) { printer->print(packet, record, out, part); };
+    };
+    output_.flush();  // What comes before the first frame.
+    threads_.emplace(count, make, [this](format::Buffer& out, const DecodedPart& part) {
+      std::swap(output_.buffer(), out);
+      const bool written = output_.flush();
+      std::swap(output_.buffer(), out);
+      say(part.hints);
+      sum_.frames += part.frames;
+      sum_.malformed += part.malformed;
+      sum_.shown += part.shown;
+      sum_.bad = sum_.bad || part.bad;
+      return written;
+    });
+  }
+
   bool take(const Packet& packet, const cli::Source& source) {
-    decoder_.decode(packet, frame_);
-    others_.look(frame_);
-    const bool noted = options_.strict && frame_.decoded.note_count() != 0;
-    malformed_ = malformed_ || frame_.malformed() || noted;
-    malformed_count_ += frame_.malformed();
+    format::Record record;
+    record.index = index_++;
+    record.number = source.number;
+    record.interface_name = source.interface_name;
+    if (threads_) return threads_->add(packet, record);
+    printer_.print(packet, record, output_.buffer(), sum_);
+    if (!sum_.hints.empty()) say(std::exchange(sum_.hints, {}));
     if (capture_) capture_->write(packet, source.interface_name);
-    record_.index = index_++;
-    record_.number = source.number;
-    record_.frame = &frame_;
-    record_.interface_name = source.interface_name;
-    record_.time_ns = packet.time_ns;
-    if (filter_ && !filter_->matches(record_)) return true;
-    record_.time_ns = clock_.shown(packet.time_ns);
-    record_.time_text = clock_.text_of(packet.time_ns);
-    formatter_->print(record_, output_.buffer());
-    ++printed_;
-    return output_.drain() && printed_ != options_.count;
+    return output_.drain() && (options_.count == 0 || sum_.shown < options_.count);
+  }
+
+  void say(const std::vector<cli::OtherSpecs::Hint>& hints) {
+    for (const cli::OtherSpecs::Hint& hint : hints) {
+      if (said_.insert(hint.about).second) report::print(stderr, "{}", hint.text);
+    }
   }
 
   const DecodeOptions& options_;
   const reflect::Protocol& protocol_;
-  reflect::FrameDecoder decoder_;
-  cli::OtherSpecs others_;
-  std::unique_ptr<format::Formatter> formatter_;
-  std::optional<format::Filter> filter_;
-  Clock clock_;
+  FramePrinter printer_;
   cli::Output output_;
-  reflect::Frame frame_;
-  format::Record record_;
   std::uint64_t index_ = 0;
-  std::uint64_t printed_ = 0;
-  std::uint64_t malformed_count_ = 0;
-  bool malformed_ = false;
+  DecodedPart sum_;
+  std::set<int> said_;
   std::optional<lines::CaptureFile> capture_;
+  std::optional<DecodeThreads> threads_;  // Ends before all that it uses.
 };
 
 // Decodes each file as a run of its own, and shows what was read of it.
@@ -238,6 +309,7 @@ int decode_each(const DecodeOptions& options) {
                      DecodeOptions one = options;
                      one.input.files = {file};
                      one.input.progress = false;
+                     one.each.jobs = 1;
                      Decode decode(one);
                      const int code = decode.run();
                      if (code <= cli::kExitFindings) members = decode.counts();
@@ -246,7 +318,9 @@ int decode_each(const DecodeOptions& options) {
 }
 
 int run_decode(const DecodeOptions& options) {
-  cli::check_each(options.each);
+  cli::EachOptions others = options.each;
+  others.jobs = 0;  // Has a meaning of its own here.
+  cli::check_each(others);
   const bool each = options.each.each && !options.input.files.empty();
   return each ? decode_each(options) : Decode(options).run();
 }
@@ -278,6 +352,9 @@ void add_decode(cli::Command& app) {
   cli::add_write_options(command, options->write, "Keep all frames in this pcapng file as well",
                          true);
   cli::add_each_options(command, options->each);
+  command.get_option("--jobs").description(
+      "Decode with so many threads, with --each so many runs at a time (default: as many as there "
+      "are cores; for captures under 64 MB 1)");
   cli::add_color_option(command, options->color);
   command.footer(
       "Examples:\n"
