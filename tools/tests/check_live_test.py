@@ -16,8 +16,8 @@ import time
 import unittest
 
 from check_live_testing import (BROKEN_LINE, CLEAN_LINE, MANY, OPEN_LINE, SERIAL_TOO, STRAY_REPLY,
-                                TWO_TAPS, CheckTest, blocks, data, frames_in, is_packet, of_findings,
-                                offline, stamped, standing, until_packet)
+                                TWO_TAPS, CheckTest, blocks, data, frames_in, is_packet,
+                                of_findings, offline, stamped, standing, until_packet)
 # pylint: disable-next=unused-import
 from live_testing import RUBRIC, Forwarder, Running, load_tests  # noqa: F401
 from serial_testing import PATIENCE_S, Pty, hdlc, holds
