@@ -25,7 +25,8 @@ install(DIRECTORY codec conformance DESTINATION ${include_dir} COMPONENT dev
   PATTERN "codec_test" EXCLUDE PATTERN "codec_bench" EXCLUDE PATTERN "*fixture.h" EXCLUDE
   PATTERN "*testing*.h" EXCLUDE PATTERN "cases" EXCLUDE PATTERN "promela" EXCLUDE
   PATTERN "scripts" EXCLUDE)
-install(FILES conformance/node/examples/pc.cc conformance/node/examples/mote.cc
+file(GLOB node_examples CONFIGURE_DEPENDS conformance/node/examples/*)
+install(FILES ${node_examples}
   DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples COMPONENT dev)
 foreach(part codec conformance)
   install(EXPORT rubric_${part} NAMESPACE rubric:: DESTINATION ${config_dir} COMPONENT dev)

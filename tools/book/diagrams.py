@@ -36,7 +36,9 @@ STATES = {"join": "How a mote joins an island",
           "listing": "How a sink lists a mote",
           "message": "How a message ends at the mote that sent it",
           "output": "An output channel of synaptic communication",
-          "input": "An input channel of synaptic communication"}
+          "input": "An input channel of synaptic communication",
+          "mote_reception": "What a mote does about a message from its radio",
+          "sink_reception": "What a sink does about a message from its radio"}
 
 FONTS = "ui-monospace,'DejaVu Sans Mono',Menlo,Consolas,monospace"
 STYLE = ("<style>"

@@ -11,6 +11,7 @@
 
 #include "codec/reflect/suggest.h"
 #include "codec/text/json.h"
+#include "conformance/explore/reception.h"
 #include "conformance/explore/transitions.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/output.h"
@@ -125,7 +126,10 @@ std::string node_of(const Diagram& diagram, std::size_t state) {
   std::string rows = "<TR><TD><B>" + html(diagram.states[state]) + "</B></TD></TR>";
   if (!inside.empty()) rows += "<HR/>" + inside;
   if (!ignored.empty()) rows += "<HR/>" + cell(small("ignored:") + std::string(kBreak) + ignored);
-  return fmt::format("  s{} [label=<{}>];\n", state, table(rows));
+  // A question of a flowchart.
+  const char* const shape =
+      diagram.states[state].ends_with('?') ? ", shape=hexagon, style=solid" : "";
+  return fmt::format("  s{} [label=<{}>{}];\n", state, table(rows), shape);
 }
 
 using Edges = std::map<std::pair<std::size_t, std::size_t>, std::vector<const Transition*>>;
@@ -236,7 +240,8 @@ void add_transition_options(cli::Command& sub, TransitionOptions& options) {
                    "Print the state diagrams of a node's parts instead, as the machine makes them");
   sub.exclude_all_but(wanted, {"--profile", "--flaw", "--format", "--out"});
   sub.add_option("--part", options.parts,
-                 "Print transitions of this part alone: join, listing, message, output, input")
+                 "Print transitions of this part alone: join, listing, message, output, input, "
+                 "mote_reception, sink_reception")
       .needs(wanted);
 }
 
@@ -244,17 +249,21 @@ void print_transitions(const TransitionOptions& options, const ExploredMachine& 
                        const std::string& format, const std::string& out) {
   std::vector<std::string> names;
   for (const explore::PartName& part : explore::part_names()) names.emplace_back(part.name);
+  const std::size_t parts = names.size();
+  for (const explore::PartName& part : explore::reception_names()) names.emplace_back(part.name);
   for (const std::string& part : options.parts) {
     if (std::find(names.begin(), names.end(), part) != names.end()) continue;
     throw cli::UsageError(
         fmt::format("unknown part '{}'{}", part, reflect::did_you_mean(part, names)));
   }
   std::vector<explore::Diagram> diagrams;
-  for (const std::string& name : names) {
+  for (std::size_t i = 0; i < names.size(); ++i) {
     const bool wanted =
         options.parts.empty() ||
-        std::find(options.parts.begin(), options.parts.end(), name) != options.parts.end();
-    if (wanted) diagrams.push_back(explore::transitions_of(name, machine.values, machine.step));
+        std::find(options.parts.begin(), options.parts.end(), names[i]) != options.parts.end();
+    if (!wanted) continue;
+    const auto draw = i < parts ? explore::transitions_of : explore::reception_of;
+    diagrams.push_back(draw(names[i], machine.values, machine.step));
   }
   std::string text;
   if (format == "json") {

@@ -42,6 +42,7 @@ struct RunOptions {
   std::string app;
   cli::WriteOptions write;
   std::string log;
+  std::string target;
   std::string type = "telosb_demo";
   std::string transducers = "light";
   std::string actuators = "led";
@@ -92,9 +93,8 @@ run::StationSetup setup_of(const RunOptions& options) {
                                    : node::Role::kBaseStation;
   setup.id = static_cast<std::uint16_t>(options.id.value_or(node::kSinkId));
   setup.island = static_cast<std::uint16_t>(options.island.value_or(0));
-  setup.name = options.is_mote()   ? fmt::format("mote{}", setup.id)
-               : options.is_sink() ? fmt::format("sink{}", setup.island)
-                                   : fmt::format("pc{}", setup.island);
+  setup.name = run::name_of(setup.role, setup.island, setup.id);
+  setup.target = options.target;
   setup.loss = options.loss_percent / 100.0;
   setup.seed = static_cast<std::uint32_t>(options.seed.value_or(std::random_device{}()));
   setup.offered = options.serial;
@@ -139,7 +139,8 @@ int run_station(const RunOptions& options) {
                   server ? name.substr(name.rfind(':')) : "");
   }
   const bool calls = options.app == "-";
-  run::JsonApplication lines({calls ? STDIN_FILENO : -1, STDOUT_FILENO, ""});
+  run::JsonApplication lines(
+      {calls ? STDIN_FILENO : -1, std::make_shared<run::LineOutput>(STDOUT_FILENO, "stdout"), ""});
   station.add(lines);
   std::optional<run::MoteApplication> mote;
   if (options.is_mote() && !calls) {
@@ -215,6 +216,7 @@ void check_run(const RunOptions& options) {
     throw cli::UsageError("--app", "programs reach a proxy at its port");
   }
   if (!mote && options.app == "demo") throw cli::UsageError("--app", "the demo is a mote's");
+  if (!mote && !options.target.empty()) throw cli::UsageError("--target", "is a mote's");
   if (mote && options.gone_after_s != 0) {
     throw cli::UsageError("--gone-after", "is a sink's or base station's");
   }
@@ -326,6 +328,11 @@ void add_run(cli::Command& app) {
                  "-: read calls as JSON lines from stdin, a mote joins by one; demo: a mote sends "
                  "readings")
       .one_of({"-", "demo"});
+  sub.add_option("--target", options->target,
+                 "Run another implementation as the mote, in virtual time turned by the clock: a "
+                 "command that speaks rct/1, such as firmware in a simulator, machine or "
+                 "machine:FLAW, as for 'rubric test'")
+      .check(cli::given);
   sub.add_option("--type", options->type, "Type of a mote that joins by itself, or its number")
       .show_default();
   sub.add_option("--transducers", options->transducers,

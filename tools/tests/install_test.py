@@ -5,6 +5,7 @@ against them, by CMake and by pkg-config, after the folder was moved as well.
 Usage: install_test.py BUILD_FOLDER.
 """
 
+import json
 import os
 import pathlib
 import re
@@ -116,6 +117,13 @@ class Install(unittest.TestCase):
                              wanted="REQUIRED COMPONENTS node")
         self.assertIn("sink: mote 5 is a member\n", said)
         self.assertRegex(said, r"mote: message \d+ acked\n$")
+
+    def test_an_application_in_python(self):
+        knock = {"event": "received", "src": "12:65533", "app_id": 10, "data": b"OPEN_DOOR".hex()}
+        said = run(sys.executable, self.examples(self.prefix) / "door.py",
+                   input=json.dumps(knock) + "\n")
+        self.assertEqual([json.loads(line)["call"] for line in said.splitlines()],
+                         ["join", "send"])
 
     @unittest.skipUnless(shutil.which("avr-g++"), "there is no avr-g++")
     def test_the_node_on_a_mote(self):

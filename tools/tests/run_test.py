@@ -18,6 +18,7 @@ import unittest
 
 from live_testing import RUBRIC, ROOT, LiveTest, Running, lines_of
 from serial_testing import PATIENCE_S
+from station_load import PACKET, message
 
 # The PC of an island knocks at the door of another until it is open.
 KNOCK = """
@@ -241,6 +242,28 @@ islands:
             # The tenth of a second in which a stop is seen: five times. Every 5 ms: 100 times.
             self.assertLess(woken[1] - woken[0], 25)
         self.assertEqual(sink.end()[0], 0)
+
+    def test_nobody_waits_for_a_slow_reader(self):
+        """Events that nobody reads wait, or are lost; messages are acknowledged in time."""
+        place = socket.create_server(("127.0.0.1", 0))
+        place.settimeout(PATIENCE_S)
+        base = self.started("base-station", "--island", "11", "--sink",
+                            f"sf@127.0.0.1:{place.getsockname()[1]}")
+        line, _ = place.accept()
+        place.close()
+        line.settimeout(PATIENCE_S)
+        self.addCleanup(line.close)
+        line.sendall(b"U ")
+        answers, count = b"", 2000  # More than a pipe takes: 64 KiB.
+        for number in range(count):
+            data = message(5, number)
+            line.sendall(bytes([len(data)]) + data)
+            while len(answers) < 2 + 12 + (number + 1) * (1 + PACKET):
+                more = line.recv(1 << 16)
+                self.assertTrue(more, base.process.poll())
+                answers += more
+        self.assertEqual(len(base.lines(count)), count)
+        self.assertEqual(base.end()[0], 0)
 
     def test_mistakes_of_a_file_have_their_line(self):
         island = "islands:\n  - island: 11\n"

@@ -512,7 +512,8 @@ void Judge::base_station_hears(std::uint16_t sink, const Observation& seen, cons
                                const Net& net) {
   const std::uint16_t base = who_.devices[sink].partner;
   if (base == kNobody) return;
-  peis_.came_up(base, sinks_.island(sink), seen, net, seen.received);
+  const bool on = !interfaces_.switched_off(base, machine::Link::kSerial);
+  peis_.came_up(base, sinks_.island(sink), seen, net, seen.received && on);
   hears(base,
         {Role::kBaseStation, {sinks_.island(sink), machine::kNullDevid}, true, context_.sink_am},
         machine::Link::kSerial, seen, sink, net, mark.receiver == base);
@@ -542,11 +543,12 @@ void Judge::peis(const Observation& seen, std::uint16_t base) {
   const machine::Address own = address_of(base);
   if (!seen.received) {
     originals_.used(base, net.seq_num);
-    const bool at_home = peis_.sent(base, seen, net, own);
-    if (at_home && net.src == own) own_message(base, seen, net, machine::Link::kPeis, own);
+    const bool original = peis_.sent(base, seen, net, own);
+    if (original) own_message(base, seen, net, machine::Link::kPeis, own);
     return;
   }
-  peis_.given(base, seen, net, own);
+  const bool off = interfaces_.switched_off(base, machine::Link::kSerial);
+  peis_.given(base, seen, net, own, off);
   hears(base, {Role::kBaseStation, own, true, context_.sink_am}, machine::Link::kPeis, seen,
         kNobody, net, true);
   const std::int32_t acked = net.is_ack() ? machine::acked_seq_num(net.body()) : -1;

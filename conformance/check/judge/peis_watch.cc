@@ -76,8 +76,9 @@ bool PeisWatch::sent(std::uint16_t base, const Observation& seen, const Net& net
   } else {
     context_.findings.kept("N8-PEIS"_rule);
   }
-  if (net.src == own) return !stray;
   Message* const came = match(watch.up, net);
+  // Its own comes up, too, where its sink hears what another island's radiates.
+  if (came == nullptr && net.src == own) return !stray;
   if (came != nullptr) {
     came->passed = true;
     came->owed = false;
@@ -85,17 +86,17 @@ bool PeisWatch::sent(std::uint16_t base, const Observation& seen, const Net& net
     refuse(base, seen, net, watch.up, true);
   }
   overdue(base, watch.up, true, seen.place.time_us, false);
-  return !stray;
+  return false;
 }
 
 void PeisWatch::given(std::uint16_t base, const Observation& seen, const Net& net,
-                      machine::Address own) {
+                      machine::Address own, bool serial_off) {
   const machine::Route route =
       machine::route_received(base_station(own, context_.sink_am), Link::kPeis, net.dest, net.src);
   const bool onward = route.onward == Onward::kSerial && net.sound;
   // A base station may pass a broadcast to every island on, or not (decision 114).
   if (onward || net.dest.pid == machine::kBroadcastPid) {
-    bases_[base].down.push({net, seen.place, onward, false});
+    bases_[base].down.push({net, seen.place, onward && !serial_off, false});
   }
 }
 

@@ -24,11 +24,13 @@ class PeisWatch {
                bool surely);
   /// Notes that the log gives `base` a message that came up before.
   void surely_up(std::uint16_t base, const Net& net);
-  /// Judges a message that `base` gives to PEIS; `own` is its address. Returns false if no message
-  /// of this kind goes there: all else that is odd about it has that one cause.
+  /// Judges a message that `base` gives to PEIS; `own` is its address. Returns whether it is one of
+  /// its own, to be judged as such; not if no message of this kind goes there, as all else that is
+  /// odd about it has that one cause.
   bool sent(std::uint16_t base, const Observation& seen, const Net& net, machine::Address own);
-  /// Takes a message from PEIS to `base`.
-  void given(std::uint16_t base, const Observation& seen, const Net& net, machine::Address own);
+  /// Takes a message from PEIS to `base`, whose serial interface may be off.
+  void given(std::uint16_t base, const Observation& seen, const Net& net, machine::Address own,
+             bool serial_off);
   /// Judges a message that `base` sends down to its sink and that is not its own.
   void went_down(std::uint16_t base, const Observation& seen, const Net& net);
   void finish(std::int64_t end_us);

@@ -33,14 +33,14 @@ SynapticWatch::Out* SynapticWatch::find(Node& node, machine::ChannelId id) {
 void SynapticWatch::called(std::uint16_t device, const Observation& seen, machine::Address own) {
   Node& node = nodes_[device];
   const bool creates = std::holds_alternative<machine::CreateChannel>(*seen.call);
-  if (creates && !node.logged) {
-    node.logged = true;
+  // The clock may be set before there is a channel.
+  const bool steps = std::holds_alternative<machine::SetTimeStep>(*seen.call);
+  if (node.channels.period_ticks == 0) {
     node.channels.period_ticks = context_.profile().synaptic_period_ticks;
   }
-  if (!node.logged) return;
-  if (std::holds_alternative<machine::SetTimeStep>(*seen.call)) {
-    node.step_us = seen.place.time_us;
-  }
+  node.logged = node.logged || creates;
+  if (!node.logged && !steps) return;
+  if (steps) node.step_us = seen.place.time_us;
   machine::Config config;
   config.role = context_.device(device).role;
   config.id = context_.device(device).am;
@@ -441,7 +441,10 @@ void SynapticWatch::settle_outputs(std::uint16_t device, std::int64_t now_us,
                                    std::int64_t able_us) {
   Node& node = nodes_[device];
   for (Out& out : node.outs) {
-    if (out.begun_us < 0 || out.id >> 16 == (out.id & 0xFFFF)) continue;
+    // Nothing is sent to the node itself, by whichever name (N4-SELF).
+    const std::uint16_t dest = out.id & 0xFFFF;
+    const bool self = dest == out.id >> 16 || dest == machine::kLocalDevid;
+    if (out.begun_us < 0 || self) continue;
     const auto channel = std::find_if(node.channels.out.begin(), node.channels.out.end(),
                                       [&](const machine::Channel& c) { return c.id == out.id; });
     if (channel == node.channels.out.end()) continue;

@@ -91,6 +91,27 @@ TEST(PeisWatch, WhatTheSinkSendsGoesToPeis) {
   EXPECT_EQ(found_by_end(some + handed + up(1000, kToPc)), "N8-PEIS");
 }
 
+// Islands on one air: the sink hears what the other island's sink radiates of its own base station,
+// and hands it up, as its src is of the island (N6-ROUTE).
+TEST(PeisWatch, ItsOwnMessageMayComeBackAndGoesOn) {
+  const std::string own = "am(28 x000cffff000bfffd000077040305beef)";
+  const std::string first =
+      at(1000, "bA < app send(dest=12:0xffff app_id=5 reliable=0 data=xbeef)") +
+      at(1001, "bA > app send_result(0x77)") + peis(1001, own) +
+      at(1007, "bB > serB am=0->1 " + own);
+  const std::string back =
+      at(1020, "sA > serA am=0->0xffff " + own) + at(1030, "bA < serA am=0->0xffff " + own);
+  EXPECT_EQ(fails(first + back + peis(1031, own)), "");
+  EXPECT_EQ(fails(first + peis(1031, own)), "N2-ONCE");
+  EXPECT_NE(found_by_end(first + back).find("N8-PEIS"), std::string::npos);
+}
+
+TEST(PeisWatch, ABaseStationWhoseLineIsOffHandsNothingOn) {
+  const std::string off =
+      at(900, "bB < app interface(link=serial on=off)") + at(900, "bB > app op_result(success)");
+  EXPECT_EQ(found_by_end(off + up(1000, kToMote) + peis(1025, kToMote)), "");
+}
+
 TEST(PeisWatch, ToTheIslandThatIsMeant) {
   EXPECT_EQ(fails(up(1000, kToPc) + at(1025, "bA > peis am=11->13 " + kToPc)), "N8-PEIS");
 }

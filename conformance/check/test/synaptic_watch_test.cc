@@ -57,6 +57,13 @@ TEST(SynapticWatch, SteadyDataPasses) {
             "");
 }
 
+TEST(SynapticWatch, TheClockMayBeSetBeforeThereIsAChannel) {
+  const std::string data_250 = channel("reliable") + data(400, 1, "0000803f") +
+                               data(650, 2, "0000803f") + data(900, 3, "0000803f");
+  EXPECT_EQ(fails(line(90, "< app set_time_step(clock=250)") + data_250), "");
+  EXPECT_NE(fails(data_250), "");
+}
+
 TEST(SynapticWatch, TicksTooCloseFail) {
   EXPECT_EQ(fails(channel("reliable") + data(600, 1, "0000803f") + data(900, 2, "0000803f")),
             "S2-TICK");

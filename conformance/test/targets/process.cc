@@ -71,10 +71,11 @@ std::string status_text(int status) {
 
 }  // namespace
 
-Process::Pipes Process::open_pipes() {
+Process::Pipes Process::open_pipes(Stderr err) {
   ignore_broken_pipes();
   Pipes pipes;
   for (Pipe* pipe : {&pipes.in, &pipes.out, &pipes.err}) {
+    if (pipe == &pipes.err && err == Stderr::kOurs) break;
     int fds[2];
     if (::pipe2(fds, O_CLOEXEC) != 0) {
       const int error = errno;
@@ -93,14 +94,16 @@ void Process::close_pipes(Pipes& pipes) {
   }
 }
 
-std::unique_ptr<Process> Process::run(const std::string& command) {
+std::unique_ptr<Process> Process::run(const std::string& command, Stderr err) {
   GroupStart start;
-  Pipes pipes = open_pipes();
+  Pipes pipes = open_pipes(err);
   posix_spawn_file_actions_t files;
   ::posix_spawn_file_actions_init(&files);
   ::posix_spawn_file_actions_adddup2(&files, pipes.in.read_fd, STDIN_FILENO);
   ::posix_spawn_file_actions_adddup2(&files, pipes.out.write_fd, STDOUT_FILENO);
-  ::posix_spawn_file_actions_adddup2(&files, pipes.err.write_fd, STDERR_FILENO);
+  if (err == Stderr::kTaken) {
+    ::posix_spawn_file_actions_adddup2(&files, pipes.err.write_fd, STDERR_FILENO);
+  }
   posix_spawnattr_t how;
   ::posix_spawnattr_init(&how);
   sigset_t none;
@@ -133,7 +136,7 @@ std::unique_ptr<Process> Process::run(const std::string& command) {
 
 std::unique_ptr<Process> Process::copy(const std::function<int(int, int)>& body) {
   GroupStart start;
-  Pipes pipes = open_pipes();
+  Pipes pipes = open_pipes(Stderr::kTaken);
   const pid_t pid = ::fork();
   if (pid < 0) {
     const int error = errno;
@@ -162,7 +165,9 @@ Process::Process(pid_t pid, std::size_t place, Pipes pipes)
   close_fd(pipes.in.read_fd);
   close_fd(pipes.out.write_fd);
   close_fd(pipes.err.write_fd);
-  for (const int fd : {in_fd_, out_fd_, err_fd_}) do_not_block(fd);
+  for (const int fd : {in_fd_, out_fd_, err_fd_}) {
+    if (fd >= 0) do_not_block(fd);
+  }
 }
 
 Process::~Process() { kill(); }

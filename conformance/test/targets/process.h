@@ -24,8 +24,10 @@ class Process {
   static constexpr std::size_t kLineBytesMax = 65535;    ///< Not counting the line feed.
   static constexpr std::size_t kStderrBytesMax = 65536;  ///< Its last ones are kept.
 
-  /// Runs `/bin/sh -c command` as the leader of a process group of its own.
-  static std::unique_ptr<Process> run(const std::string& command);
+  enum class Stderr : unsigned char { kTaken, kOurs };
+  /// Runs `/bin/sh -c command` as the leader of a process group of its own. Its standard error is
+  /// taken, for take_stderr(), or is this process's own.
+  static std::unique_ptr<Process> run(const std::string& command, Stderr err = Stderr::kTaken);
   /// Runs `body` in a copy of this process, which exits with the status that it returns. Only where
   /// no other thread may hold a lock.
   static std::unique_ptr<Process> copy(const std::function<int(int in_fd, int out_fd)>& body);
@@ -43,6 +45,10 @@ class Process {
   bool has_output();
   /// Returns whether its standard output was seen to end.
   bool closed() const { return out_fd_ < 0; }
+  /// Returns the ends of its pipes for whoever reads and writes them alone; -1: closed. They do not
+  /// block.
+  int out_fd() const { return out_fd_; }
+  int in_fd() const { return in_fd_; }
   /// Returns the end of its standard error since the last call.
   std::string take_stderr();
 
@@ -61,7 +67,7 @@ class Process {
   struct Pipes {
     Pipe in, out, err;
   };
-  static Pipes open_pipes();
+  static Pipes open_pipes(Stderr err);
   static void close_pipes(Pipes& pipes);
   Process(pid_t pid, std::size_t place, Pipes pipes);
 

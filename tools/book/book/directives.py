@@ -179,9 +179,12 @@ class Directives:
             self.mistakes.add(*place, expected("state diagram", name, known))
             return ""
         svg = self._draw(place, diagrams.states_svg, name)
+        what = ("each question that the reference machine's answers depend on"
+                if name.endswith("_reception") else
+                "every transition that the reference machine makes in small networks")
         return (f'<figure class="drawing states"><div class="scroll">{svg}</div>'
-                f"<figcaption>{escape(known[name])}: every transition that the reference machine "
-                "makes in small networks.</figcaption></figure>") if svg else ""
+                f"<figcaption>{escape(known[name])}: {what}."
+                "</figcaption></figure>") if svg else ""
 
     def _help(self, place, name, _level):
         try:

@@ -81,7 +81,8 @@ auto named(const YAML::Node& node, const std::string& key, Parse parse) {
 }
 
 EcologyMote mote_of(const YAML::Node& node) {
-  auto values = values_of(node, "a mote", {"id", "type", "transducers", "actuators", "app"});
+  auto values =
+      values_of(node, "a mote", {"id", "type", "transducers", "actuators", "app", "target"});
   if (!values.contains("id")) throw Mistake{line_of(node), "a mote needs an id"};
   EcologyMote mote;
   mote.id = static_cast<std::uint16_t>(number_of(values["id"], "id", node::kSinkId + 1, kIdMax));
@@ -97,6 +98,9 @@ EcologyMote mote_of(const YAML::Node& node) {
   }
   if (const auto at = values.find("app"); at != values.end()) {
     mote.app = text_of(at->second, "app");
+  }
+  if (const auto at = values.find("target"); at != values.end()) {
+    mote.target = text_of(at->second, "target");
   }
   return mote;
 }
@@ -125,7 +129,8 @@ std::string serial_of(const YAML::Node& node) {
 }
 
 EcologyIsland island_of(const YAML::Node& node, std::size_t index) {
-  auto values = values_of(node, "an island", {"island", "radio", "serial", "app", "motes"});
+  auto values =
+      values_of(node, "an island", {"island", "radio", "serial", "app", "sink_app", "motes"});
   if (!values.contains("island")) throw Mistake{line_of(node), "an island needs its number"};
   EcologyIsland island;
   island.island = static_cast<std::uint16_t>(number_of(values["island"], "island", 1, kIdMax));
@@ -133,6 +138,7 @@ EcologyIsland island_of(const YAML::Node& node, std::size_t index) {
                                           : fmt::format("zep:{}", kFirstPort + index);
   if (values.contains("serial")) island.serial = serial_of(values["serial"]);
   if (values.contains("app")) island.app = text_of(values["app"], "app");
+  if (values.contains("sink_app")) island.sink_app = text_of(values["sink_app"], "sink_app");
   if (!island.serial.empty() && !island.app.empty()) {
     throw Mistake{line_of(values["app"]),
                   "app is the base station's, which is the program at 'serial'"};

@@ -13,7 +13,8 @@ namespace rubric::run {
 struct EcologyMote {
   std::uint16_t id = 0;
   machine::Descriptor descriptor;
-  std::string app;  ///< A command that speaks JSON lines, "demo", or empty: it only joins.
+  std::string app;     ///< A command that speaks JSON lines, "demo", or empty: it only joins.
+  std::string target;  ///< Another implementation of it, as for `rubric test`; empty: our own.
 };
 
 struct EcologyIsland {
@@ -22,6 +23,7 @@ struct EcologyIsland {
   std::string
       serial;       ///< What the sink offers to a program of the user's; empty: its base station.
   std::string app;  ///< Of the base station; empty: none.
+  std::string sink_app;  ///< Of the sink, the same.
   std::vector<EcologyMote> motes;
 };
 

@@ -13,7 +13,7 @@
 #include "codec/lines/broken.h"
 #include "codec/lines/stop.h"
 #include "codec/text/text.h"
-#include "tools/commands/run/child.h"
+#include "conformance/test/targets/process.h"
 #include "tools/commands/run/json_application.h"
 #include "tools/commands/run/mote_application.h"
 #include "tools/commands/run/station.h"
@@ -24,9 +24,11 @@
 namespace rubric::run {
 namespace {
 
+constexpr lines::Milliseconds kApplicationEnds{2000};  // Of itself, when its input has ended.
+
 // One node with what belongs to it. Members end in the order of their need for each other.
 struct Inhabitant {
-  std::unique_ptr<Child> child;
+  std::unique_ptr<targets::Process> child;
   std::deque<std::unique_ptr<Application>> applications;
   std::unique_ptr<space::Gateway> gateway;
   std::unique_ptr<Station> station;
@@ -39,14 +41,13 @@ class Plan {
 
   StationSetup sink(const EcologyIsland& island) {
     StationSetup setup = on_air(island, node::Role::kSink, node::kSinkId);
-    setup.name = fmt::format("sink{}", island.island);
     setup.offered = island.serial.empty() ? "sf-server:0" : island.serial;
     return setup;
   }
   StationSetup base_station(const EcologyIsland& island) {
     StationSetup setup;
     setup.role = node::Role::kBaseStation;
-    setup.name = fmt::format("pc{}", island.island);
+    setup.name = name_of(setup.role, island.island, setup.id);
     setup.island = island.island;
     setup.seed = next_seed();
     setup.keeps = false;  // Its sink keeps the line's frames.
@@ -54,7 +55,7 @@ class Plan {
   }
   StationSetup mote(const EcologyIsland& island, const EcologyMote& mote) {
     StationSetup setup = on_air(island, node::Role::kMote, mote.id);
-    setup.name = fmt::format("mote{}_{}", island.island, mote.id);
+    setup.target = mote.target;
     setup.keeps = false;
     return setup;
   }
@@ -64,6 +65,7 @@ class Plan {
     StationSetup setup;
     setup.role = role;
     setup.id = id;
+    setup.name = name_of(role, island.island, id);
     setup.island = role == node::Role::kSink ? island.island : std::uint16_t{0};
     setup.air = lines::parse_address(island.radio)->at;
     setup.loss = ecology_.loss_percent / 100.0;
@@ -98,6 +100,9 @@ class Islands {
       threads.emplace_back([this, station = inhabitant->station.get()] { run(*station); });
     }
     for (std::thread& thread : threads) thread.join();
+    for (const auto& inhabitant : inhabitants_) {
+      if (inhabitant->child) inhabitant->child->end(kApplicationEnds);
+    }
     // Motes first, then what they talk to.
     while (!inhabitants_.empty()) inhabitants_.pop_back();
     if (!fault_.empty()) throw lines::Broken(fault_);
@@ -105,7 +110,7 @@ class Islands {
 
  private:
   void settle(const EcologyIsland& island, Plan& plan) {
-    Inhabitant& sink = add(plan.sink(island), "", nullptr);
+    Inhabitant& sink = add(plan.sink(island), island.sink_app, nullptr);
     const std::uint16_t air = sink.station->air_port();
     report::print(stderr, "rubric: island {}: zep:{}, {}\n", island.island, air,
                   sink.station->serial_address());
@@ -129,11 +134,12 @@ class Islands {
     const std::string name = setup.name;
     one.station = std::make_unique<Station>(std::move(setup), keeper_);
     one.applications.push_back(
-        std::make_unique<JsonApplication>(JsonApplication::Ends{-1, STDOUT_FILENO, name}));
+        std::make_unique<JsonApplication>(JsonApplication::Ends{-1, events_, name}));
     if (!app.empty() && app != "demo") {
-      one.child = std::make_unique<Child>(app);
+      one.child = targets::Process::run(app, targets::Process::Stderr::kOurs);
+      auto calls = std::make_shared<LineOutput>(one.child->in_fd(), "the application of " + name);
       one.applications.push_back(std::make_unique<JsonApplication>(
-          JsonApplication::Ends{one.child->out(), one.child->in(), ""}));
+          JsonApplication::Ends{one.child->out_fd(), std::move(calls), ""}));
     } else if (mote != nullptr) {
       one.applications.push_back(
           std::make_unique<MoteApplication>(mote->descriptor, app == "demo"));
@@ -170,6 +176,7 @@ class Islands {
   const Ecology& ecology_;
   const std::string& credentials_;
   Keeper& keeper_;
+  std::shared_ptr<LineOutput> events_ = std::make_shared<LineOutput>(STDOUT_FILENO, "stdout");
   std::shared_ptr<space::MemoryBoard> board_ = std::make_shared<space::MemoryBoard>();
   std::deque<std::unique_ptr<Inhabitant>> inhabitants_;
   std::mutex mutex_;

@@ -6,6 +6,7 @@
 
 #include <cerrno>
 #include <charconv>
+#include <chrono>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -13,7 +14,6 @@
 #include <vector>
 
 #include "codec/reflect/encode.h"
-#include "codec/text/files.h"
 #include "tools/format/put.h"
 
 namespace rubric::run {
@@ -213,12 +213,6 @@ std::string json_line(const machine::Notice& notice, const std::string& node) {
   return line_of(std::visit(EventOf(), notice), node);
 }
 
-void JsonApplication::print(std::string line) {
-  line += '\n';
-  // One write, so that lines of several nodes stay whole.
-  if (!ended_ && report::write_all(ends_.out, line) != 0) ended_ = true;
-}
-
 void JsonApplication::happened(const machine::Notice& notice, Caller&) {
   print(json_line(notice, ends_.node));
 }
@@ -226,14 +220,20 @@ void JsonApplication::happened(const machine::Notice& notice, Caller&) {
 lines::SteadyTime JsonApplication::run(Caller& caller) {
   pollfd input{fd(), POLLIN, 0};
   if (fd() >= 0 && ::poll(&input, 1, 0) > 0) read(caller);
-  return lines::SteadyTime::max();
+  constexpr lines::Milliseconds kAgain{20};
+  return ends_.out->flush() ? lines::SteadyTime::max() : std::chrono::steady_clock::now() + kAgain;
+}
+
+void JsonApplication::stop(Caller&) {
+  constexpr lines::Milliseconds kLastWords{1000};
+  ends_.out->finish(std::chrono::steady_clock::now() + kLastWords);
 }
 
 void JsonApplication::read(Caller& caller) {
   char room[4096];
   const ssize_t size = ::read(ends_.in, room, sizeof room);
   if (size <= 0) {
-    ended_ = ended_ || size == 0 || errno != EINTR;
+    ended_ = size == 0 || (errno != EINTR && errno != EAGAIN);
     return;
   }
   input_.append(room, static_cast<std::size_t>(size));

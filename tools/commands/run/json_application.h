@@ -1,9 +1,11 @@
 // An application as JSON lines: calls come in, events go out, by the names of .rtr.
 #pragma once
 
+#include <memory>
 #include <string>
 
 #include "tools/commands/run/application.h"
+#include "tools/commands/run/line_output.h"
 
 namespace rubric::run {
 
@@ -11,27 +13,28 @@ namespace rubric::run {
 /// empty, comes first.
 std::string json_line(const machine::Notice& notice, const std::string& node);
 
-/// Writes events to a descriptor, each at once, and makes the calls that it reads from another,
+/// Writes events, each at once if it can be, and makes the calls that it reads from another,
 /// such as {"call":"send","dest":"11:1","app_id":10,"reliable":true,"data":"0102"}. Of a line that
 /// makes no sense it writes why.
 class JsonApplication final : public Application {
  public:
   struct Ends {
     int in = -1;  ///< -1: no calls come. Its end ends the node.
-    int out = 1;
+    std::shared_ptr<LineOutput> out;
     std::string node;  ///< Written with each event; empty: it is not.
   };
   explicit JsonApplication(Ends ends) : ends_(std::move(ends)) {}
 
   void happened(const machine::Notice& notice, Caller& caller) override;
   lines::SteadyTime run(Caller& caller) override;
-  int fd() const override { return ended_ ? -1 : ends_.in; }
-  bool ended() const override { return ended_; }
+  int fd() const override { return ended() ? -1 : ends_.in; }
+  bool ended() const override { return ended_ || ends_.out->closed(); }
+  void stop(Caller& caller) override;
 
  private:
   void read(Caller& caller);
   void call(const std::string& line, Caller& caller);
-  void print(std::string line);
+  void print(const std::string& line) { ends_.out->put(line + '\n'); }
 
   Ends ends_;
   std::string input_;  // Not yet a whole line.

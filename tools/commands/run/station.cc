@@ -8,9 +8,10 @@
 #include <random>
 #include <utility>
 
-#include "codec/generated/tinyos/am_header.h"
 #include "codec/text/text.h"
-#include "tools/commands/run/calls.h"
+#include "tools/commands/run/own_layer.h"
+#include "tools/commands/run/packets.h"
+#include "tools/commands/run/target_layer.h"
 #include "tools/commands/run/wall_clock.h"
 
 namespace rubric::run {
@@ -23,27 +24,15 @@ using std::chrono::steady_clock;
 constexpr milliseconds kMoment{5};     // Between looks at a tuple space.
 constexpr milliseconds kLongest{100};  // Until a stop is seen.
 
-machine::Link link_of(Line line) { return static_cast<machine::Link>(line); }
-
 node::Ticks gone_after(const StationSetup& setup) { return setup.gone_after_s * 1024; }
 
-// A packet as the machine's frame, which a log shows.
-machine::Frame frame_of(Line line, Bytes packet) {
-  machine::Frame frame;
-  frame.link = link_of(line);
-  const auto header = tinyos::AmHeaderView::parse(packet);
-  if (!header) {
-    frame.packet = packet;
-    return frame;
-  }
-  frame.dest = header->dest();
-  frame.src = header->src();
-  frame.type = header->type();
-  frame.payload = header->stale();
-  return frame;
-}
-
 }  // namespace
+
+std::string name_of(node::Role role, std::uint16_t island, std::uint16_t id) {
+  if (role == node::Role::kSink) return fmt::format("sink{}", island);
+  if (role == node::Role::kBaseStation) return fmt::format("pc{}", island);
+  return island == 0 ? fmt::format("mote{}", id) : fmt::format("mote{}_{}", island, id);
+}
 
 trace::NodeHeader header_of(const StationSetup& setup) {
   trace::NodeHeader header;
@@ -55,7 +44,9 @@ trace::NodeHeader header_of(const StationSetup& setup) {
   if (!mote) header.island = setup.island;
   header.iut = true;
   header.stated = {{trace::ParameterId::kResponse, kResponseTicks}};
-  if (!base) header.stated.push_back({trace::ParameterId::kChannels, node::AnySizes::kChannels});
+  if (!base && setup.target.empty()) {
+    header.stated.push_back({trace::ParameterId::kChannels, node::AnySizes::kChannels});
+  }
   if (setup.gone_after_s != 0) {
     header.stated.push_back({trace::ParameterId::kGoneAfter, gone_after(setup)});
   }
@@ -65,7 +56,6 @@ trace::NodeHeader header_of(const StationSetup& setup) {
 Station::Station(StationSetup setup, Keeper& keeper)
     : setup_(std::move(setup)),
       keeper_(keeper),
-      node_(*this, *this),
       started_(steady_clock::now()),
       island_(setup_.island) {
   names_.node = setup_.name;
@@ -75,11 +65,29 @@ Station::Station(StationSetup setup, Keeper& keeper)
   if (!is_base_station()) open_radio();
   if (setup_.to) serial_.emplace(*setup_.to);
   if (!setup_.offered.empty()) serial_.emplace(setup_.offered);
+  layer_ = make_layer();
+  started_ = steady_clock::now();
+}
+
+std::unique_ptr<Layer> Station::make_layer() {
+  LayerUser& user = *this;
+  const auto last = static_cast<std::uint16_t>(std::mt19937(setup_.seed)() % 60'000);
+  if (!setup_.target.empty()) {
+    return std::make_unique<TargetLayer>(setup_.target, setup_.id, last + 1, user);
+  }
+  node::Setup setup{};
+  setup.role = setup_.role;
+  setup.id = setup_.id;
+  setup.island = setup_.island;
+  setup.channels = node::AnySizes::kChannels;
+  setup.last_seq_num = last;
+  setup.slack = 1;
+  return std::make_unique<OwnLayer>(setup, gone_after(setup_), user);
 }
 
 void Station::open_radio() {
   VirtualRadio::User user;
-  user.listens = [this] { return node_.interface_is_on(Line::kRadio); };
+  user.listens = [this] { return layer_->listens(); };
   user.heard = [this](Bytes packet) { heard(Line::kRadio, packet); };
   user.sent = [this](bool acked) {
     catch_up();
@@ -87,7 +95,7 @@ void Station::open_radio() {
       keeper_.given(names_, machine::SendDone{machine::Link::kRadio, acked});
     }
     awaits_link_ack_ = false;
-    node_.sent(Line::kRadio, acked);
+    layer_->sent(Line::kRadio, acked);
   };
   user.on_air = [this](const Packet& packet) {
     if (setup_.keeps) keeper_.frame(packet, setup_.air_name == "rA" ? "radio" : setup_.air_name);
@@ -113,17 +121,11 @@ lines::SteadyTime Station::catch_up() {
   const lines::SteadyTime latest = steady_clock::now() + kLongest;
   if (depth_ > 0) return latest;
   const node::Ticks now = ticks();
-  node::Ticks due = 0;
   ++depth_;
-  bool runs = node_.run(now, due);
-  node::Ticks gone = 0;
-  if (silence_.run(node_, *this, now, gone)) {
-    if (!runs || node::is_reached(gone, due)) due = gone;
-    runs = true;
-  }
+  const std::optional<node::Ticks> due = layer_->run(now);
   --depth_;
-  if (!runs) return latest;
-  const std::int64_t left_ticks = static_cast<std::int32_t>(due - now);
+  if (!due) return latest;
+  const std::int64_t left_ticks = static_cast<std::int32_t>(*due - now);
   const milliseconds left(std::max<std::int64_t>(0, left_ticks) * 1000 / 1024 + 1);
   return std::min(latest, steady_clock::now() + left);
 }
@@ -132,8 +134,7 @@ void Station::heard(Line line, Bytes packet) {
   catch_up();
   keeper_.given(names_, machine::Heard{frame_of(line, packet)});
   ++depth_;
-  node_.received(line, packet);
-  silence_.received(node_, setup_.role, line, packet, ticks());
+  layer_->received(line, packet);
   --depth_;
 }
 
@@ -149,44 +150,23 @@ void Station::transmit(Line line, Bytes packet, bool link_ack) {
     serial_->send(bytes);
   }
   if (line == Line::kPeis && peers_ != nullptr) peers_->send(packet);
-  node_.sent(line, false);
+  layer_->sent(line, false);
 }
 
 std::optional<machine::Notice> Station::call(const machine::Call& call) {
   catch_up();
   keeper_.given(names_, machine::Called{call});
   ++depth_;
-  const std::optional<machine::Notice> result = perform(call, node_);
+  const std::optional<machine::Notice> result = layer_->call(call);
   --depth_;
   if (result) keeper_.did(names_, *result);
+  catch_up();
   return result;
 }
 
 void Station::happened(const machine::Notice& notice) {
   keeper_.did(names_, notice);
   for (run::Application* application : applications_) application->happened(notice, *this);
-}
-
-void Station::joined(node::Address own, bool success) {
-  happened(machine::Joined{address_of(own), success});
-}
-
-void Station::mote_joined(node::Address mote, const node::Descriptor& descriptor) {
-  happened(machine::MoteJoined{address_of(mote), descriptor_of(descriptor)});
-}
-
-void Station::mote_left(node::Address mote) { happened(machine::MoteLeft{address_of(mote)}); }
-
-void Station::received(node::Address src, std::uint8_t app_id, Bytes data) {
-  happened(machine::Received{address_of(src), app_id, data});
-}
-
-void Station::ack_received(std::uint8_t app_id, std::uint16_t seq_num, bool success) {
-  happened(machine::AckReceived{app_id, seq_num, success});
-}
-
-void Station::syn_data_received(node::ChannelId channel, node::DataStatus status) {
-  happened(machine::SynDataReceived{channel, static_cast<machine::DataStatus>(status)});
 }
 
 void Station::keep_serial(const std::vector<std::uint8_t>& bytes, bool inbound) {
@@ -201,16 +181,6 @@ void Station::keep_serial(const std::vector<std::uint8_t>& bytes, bool inbound) 
 }
 
 void Station::run(const std::function<bool()>& stop) {
-  node::Setup setup{};
-  setup.role = setup_.role;
-  setup.id = setup_.id;
-  setup.island = setup_.island;
-  setup.channels = node::AnySizes::kChannels;
-  setup.last_seq_num = static_cast<std::uint16_t>(std::mt19937(setup_.seed)() % 60'000);
-  setup.slack = 1;
-  setup.now = ticks();
-  node_.start(setup);
-  silence_.start(gone_after(setup_));
   for (run::Application* application : applications_) application->start(*this);
   while (!stop() && !has_ended()) step();
   for (run::Application* application : applications_) application->stop(*this);
@@ -260,7 +230,7 @@ void Station::hear_serial() {
 
 // Says that the host at a sink's serial line has another island in mind.
 void Station::look_at_island() {
-  const std::uint16_t island = node_.address().pid;
+  const std::uint16_t island = layer_->island();
   if (!is_sink() || island == island_) return;
   report::print(stderr, "rubric: the host at the serial line made this island {}, which was {}\n",
                 island, island_);

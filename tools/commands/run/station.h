@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "conformance/node/node.h"
-#include "conformance/node/silence.h"
+#include "conformance/node/sizes.h"
 #include "conformance/trace/trace.h"
 #include "tools/commands/run/application.h"
 #include "tools/commands/run/keeper.h"
+#include "tools/commands/run/layer.h"
 #include "tools/commands/run/serial_end.h"
 #include "tools/commands/run/virtual_radio.h"
 
@@ -29,12 +29,16 @@ struct StationSetup {
   std::string offered;               ///< A sink's serial line: pty, sf-server:PORT; empty: none.
   std::optional<lines::Address> to;  ///< A base station's line to its sink.
   std::uint32_t gone_after_s = 0;    ///< Silence after which a mote has left; 0: never.
+  std::string target;                ///< Another implementation of a mote; empty: our own.
   bool keeps = true;  ///< Whether it keeps the frames of its lines; not if another node there does.
 };
 
 /// What a PC promises: a process may be late. (decision 125)
 constexpr int kResponseTicks = 1000;
 
+/// Returns the name of a node in logs and events: sink11, pc11, mote5, or mote11_5 where there are
+/// several islands; `island` is then not 0.
+std::string name_of(node::Role role, std::uint16_t island, std::uint16_t id);
 /// Returns the node as a log names it.
 trace::NodeHeader header_of(const StationSetup& setup);
 
@@ -51,7 +55,7 @@ class Peers {
 };
 
 /// Runs in one thread.
-class Station final : private node::Driver, private node::Application, public Caller {
+class Station final : private LayerUser, public Caller {
  public:
   /// Opens its lines. Throws Broken if one cannot be had.
   Station(StationSetup setup, Keeper& keeper);
@@ -70,25 +74,19 @@ class Station final : private node::Driver, private node::Application, public Ca
   std::optional<machine::Notice> call(const machine::Call& call) override;
 
  private:
-  // node::Driver
+  // LayerUser
   void transmit(node::Line line, Bytes packet, bool link_ack) override;
-  // node::Application
-  void joined(node::Address own, bool success) override;
-  void mote_joined(node::Address mote, const node::Descriptor& descriptor) override;
-  void mote_left(node::Address mote) override;
-  void received(node::Address src, std::uint8_t app_id, Bytes data) override;
-  void ack_received(std::uint8_t app_id, std::uint16_t seq_num, bool success) override;
-  void syn_data_received(node::ChannelId channel, node::DataStatus status) override;
+  void happened(const machine::Notice& notice) override;
 
   bool is_mote() const { return setup_.role == node::Role::kMote; }
   bool is_sink() const { return setup_.role == node::Role::kSink; }
   bool is_base_station() const { return setup_.role == node::Role::kBaseStation; }
   node::Ticks ticks() const;
+  std::unique_ptr<Layer> make_layer();
   void open_radio();
   void keep_serial(const std::vector<std::uint8_t>& bytes, bool inbound);
   lines::SteadyTime catch_up();
   void heard(node::Line line, Bytes packet);
-  void happened(const machine::Notice& notice);
   void step();
   void hear_serial();
   void look_at_island();
@@ -97,15 +95,14 @@ class Station final : private node::Driver, private node::Application, public Ca
   StationSetup setup_;
   Keeper& keeper_;
   events::NodeNames names_;
-  node::SizedNode<node::AnySizes> node_;
-  node::Silence<255> silence_;
   lines::SteadyTime started_;
+  std::unique_ptr<Layer> layer_;
   std::vector<run::Application*> applications_;
   Peers* peers_ = nullptr;
   std::optional<VirtualRadio> radio_;
   std::optional<SerialEnd> serial_;
   bool awaits_link_ack_ = false;
-  int depth_ = 0;  // Of calls into the node: a callback may call.
+  int depth_ = 0;  // Of calls into the layer: a callback may call.
   bool warned_ = false;
   std::uint16_t island_ = 0;
 };

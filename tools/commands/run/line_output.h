@@ -1,0 +1,41 @@
+// Lines for a program that may read slowly, or not at all.
+#pragma once
+
+#include <cstddef>
+#include <mutex>
+#include <string>
+#include <string_view>
+
+#include "codec/lines/time.h"
+
+namespace rubric::run {
+
+/// What its reader has not taken waits here, so that it holds no node up: a node that waits breaks
+/// the rules of time. Several threads may write; each line stays whole.
+class LineOutput {
+ public:
+  /// `name` is for what is said on stderr.
+  LineOutput(int fd, std::string name) : fd_(fd), name_(std::move(name)) {}
+
+  /// Takes a line with its end. Where the reader is too far behind the line is lost, and stderr
+  /// says so once.
+  void put(std::string_view line);
+  /// Writes what the reader takes now. Returns whether nothing waits.
+  bool flush();
+  /// Writes what waits until the deadline. Says on stderr how many lines were lost.
+  void finish(lines::SteadyTime deadline);
+  /// Returns whether the reader has gone.
+  bool closed() const;
+
+ private:
+  bool write_some();
+
+  const int fd_;
+  const std::string name_;
+  mutable std::mutex mutex_;
+  std::string waiting_;
+  std::size_t lost_ = 0;
+  bool closed_ = false;
+};
+
+}  // namespace rubric::run

@@ -1,0 +1,93 @@
+#!/usr/bin/env python3
+"""Other implementations as motes of a virtual air: `rubric run mote --target`.
+
+Usage: run_target_test.py RUBRIC PROJECT_FOLDER TARGET... All of it on this host's loopback.
+"""
+
+import subprocess
+import sys
+import unittest
+
+from live_testing import RUBRIC, LiveTest
+from run_test import Node
+
+TARGETS = sys.argv[1:]
+del sys.argv[1:]
+
+
+class Targets(LiveTest):
+    program = Node
+
+    def judged(self, kept):
+        checked = subprocess.run([RUBRIC, "check", kept], capture_output=True, check=False,
+                                 text=True)
+        self.assertEqual(checked.returncode, 0, checked.stdout)
+
+    def island_with(self, target):
+        kept, log = self.folder / "run.pcapng", self.folder / "mote.rtr"
+        sink = self.started("sink", "--island", "11", "--radio", "zep:0", "--serial",
+                            "sf-server:0", "--seed", "1", "--write", kept)
+        air = "zep:" + sink.waits_for(rb"zep:(\d+)\n")
+        serial = "sf@localhost:" + sink.waits_for(rb"sf-server:(\d+)\n")
+        base = self.started("base-station", "--island", "11", "--sink", serial, "--app", "-")
+        base.waits_for(rb"(connected)")
+        mote = self.started("mote", "--id", "5", "--radio", air, "--app", "-", "--seed", "2",
+                            "--target", target, "--log", log)
+        mote.call("join", type=1, transducers=3, actuators=2)
+        mote.event("joined", own="11:5", success=True)
+        sink.event("mote_joined", mote="11:5")
+        base.event("received", src="11:5")
+        ours = self.started("mote", "--id", "6", "--radio", air, "--app", "-", "--seed", "3")
+        ours.call("join", type=1, transducers=1, actuators=1)
+        ours.event("joined", own="11:6", success=True)
+        return sink, base, mote, ours, (kept, log)
+
+    def test_they_live_in_an_island(self):
+        for target in TARGETS:
+            with self.subTest(target=target):
+                sink, base, mote, ours, kept = self.island_with(target)
+                mote.call("send", dest="11:6", app_id=10, reliable=True, data="0102")
+                number = mote.event("send_result", success=True)["seq_num"]
+                ours.event("received", src="11:5", app_id=10, data="0102")
+                mote.event("ack_received", seq_num=number, success=True)
+                base.call("send", dest="11:5", app_id=10, reliable=True,
+                          data=b"OPEN_DOOR".hex())
+                number = base.event("send_result", success=True)["seq_num"]
+                mote.event("received", src="11:65533", data=b"OPEN_DOOR".hex())
+                base.event("ack_received", seq_num=number, success=True)
+                ours.call("create_in", src="11:5", size=1, power_save=False)
+                ours.call("start", channel="5->6")
+                mote.call("create_out", dest="11:6", size=1, power_save=False)
+                mote.event("channel_result", channel="5->6", success=True)
+                mote.call("write_output", channel="5->6", pos=0, value=1.5)
+                mote.call("start", channel="5->6")
+                ours.event("syn_data", channel="5->6", status="new")
+                ours.call("read_input", channel="5->6", pos=0)
+                self.assertEqual(ours.event("input_value", success=True)["value"], 1.5)
+                for node in (mote, ours, base, sink):
+                    self.assertEqual(node.end()[0], 0)
+                for one in kept:
+                    self.judged(one)
+                    one.unlink()
+
+    def test_clear_errors(self):
+        for target, code, text in (("false", 66, "false: `hello rct/1`: ended with status 1"),
+                                   ("read x; echo hello rct/1 x 1 roles=mote time=real", 64,
+                                    "whose clock can be turned"),
+                                   ("machine:flies", 64, "flies")):
+            run = subprocess.run([RUBRIC, "run", "mote", "--id", "5", "--radio", "zep:0",
+                                  "--target", target], capture_output=True, check=False, text=True)
+            self.assertEqual(run.returncode, code, run.stderr)
+            self.assertIn(text, run.stderr)
+
+    def test_a_mote_that_breaks(self):
+        command = ("read x; echo hello rct/1 x 1 roles=mote time=virtual; read x; echo ready; "
+                   "echo broken >&2; false")
+        run = subprocess.run([RUBRIC, "run", "mote", "--id", "5", "--radio", "zep:0", "--target",
+                              command], capture_output=True, check=False, text=True)
+        self.assertEqual(run.returncode, 66, run.stderr)
+        self.assertIn("broken\n", run.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
