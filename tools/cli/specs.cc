@@ -49,7 +49,7 @@ void add_requirements(rubricc::Model& model) {
 void require_sound(rubricc::Model& model, rubricc::Diagnostics& diagnostics,
                    rubricc::CheckFor what) {
   rubricc::check_model(model, diagnostics, what);
-  report::print(stderr, "{}{}", diagnostics.print_notes(), diagnostics.print());
+  text::print(stderr, "{}{}", diagnostics.print_notes(), diagnostics.print());
   if (!diagnostics.empty()) exit_with(kExitInput);
 }
 
@@ -76,7 +76,7 @@ const reflect::Protocol& read_spec(const std::string& spec) {
 /// Prints the id and the title of each protocol.
 [[noreturn]] void list_specs() {
   for (const std::string& name : protocol_names()) {
-    report::print(stdout, "{:<16}{}\n", name, protocol_of(name).title);
+    text::print(stdout, "{:<16}{}\n", name, protocol_of(name).title);
   }
   exit_with(kExitClean);
 }
@@ -170,12 +170,12 @@ void OtherSpecs::look_closer(const reflect::Frame& frame) {
     if (tried.malformed() || tried.decoded.note_count() != 0) continue;
     if (!frame.am.present) {
       const char* message = tried.decoded.message() ? tried.decoded.message()->name : "frame";
-      report::print(stderr, "rubric: a {} fits {}: --spec {}\n", message, name, name);
+      text::print(stderr, "rubric: a {} fits {}: --spec {}\n", message, name, name);
       said_of_links_ = true;
       return;
     }
     const std::string_view also = claims(chosen_, frame.am.type) ? "also fits" : "fits";
-    report::print(stderr, "rubric: AM {} {} {}: --spec {}\n", frame.am.type, also, name, name);
+    text::print(stderr, "rubric: AM {} {} {}: --spec {}\n", frame.am.type, also, name, name);
     said_[frame.am.type] = true;
   }
 }

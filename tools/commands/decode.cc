@@ -164,8 +164,8 @@ class Decode {
         [this] { output_.flush(); });
     const bool written = output_.finish();
     if (result.live) {
-      report::print(stderr, "rubric: {} frames, {} malformed, {} shown\n", index_, malformed_count_,
-                    printed_);
+      text::print(stderr, "rubric: {} frames, {} malformed, {} shown\n", index_, malformed_count_,
+                  printed_);
     }
     // A source that cannot be had costs no file.
     const bool kept = !capture_ || (result.failed && !capture_->is_started()) || capture_->finish();

@@ -216,7 +216,7 @@ std::string json_line(const machine::Notice& notice, const std::string& node) {
 void JsonApplication::print(std::string line) {
   line += '\n';
   // One write, so that lines of several nodes stay whole.
-  if (!ended_ && report::write_all(ends_.out, line) != 0) ended_ = true;
+  if (!ended_ && text::write_all(ends_.out, line) != 0) ended_ = true;
 }
 
 void JsonApplication::happened(const machine::Notice& notice, Caller&) {
