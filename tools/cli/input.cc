@@ -169,7 +169,7 @@ class Run {
         complain(std::strerror(error.code().value()));
       } catch (const FileChanged& changed) {
         complain(changed.what());
-      } catch (const report::PackedDamage& damage) {
+      } catch (const text::PackedDamage& damage) {
         complain(damage.what());
       } catch (const std::invalid_argument& error) {
         complain(error.what());
@@ -182,7 +182,7 @@ class Run {
   void remark(std::string_view what) {
     progress_.clear();
     const std::string_view name = source_.file == "-" ? "stdin" : source_.file;
-    report::print(stderr, "rubric: {}: {}\n", name, what);
+    text::print(stderr, "rubric: {}: {}\n", name, what);
   }
 
   void complain(std::string_view what) {
@@ -205,7 +205,7 @@ class Run {
       const std::unique_ptr<Reader> reader = make_reader(line.format(), reader_options);
       try {
         line.open(std::chrono::steady_clock::now() + kReconnectEvery);
-        if (std::exchange(lost_, false)) report::print(stderr, "rubric: {}: again\n", address.name);
+        if (std::exchange(lost_, false)) text::print(stderr, "rubric: {}: again\n", address.name);
         pump_line(line, *reader);
       } catch (const lines::Broken& broken) {
         if (!lost_) complain(broken.what());
@@ -227,7 +227,7 @@ class Run {
     lines::Air air(address.at);
     try {
       air.open();
-      if (address.at.port == 0) report::print(stderr, "rubric: zep:{}\n", air.port());
+      if (address.at.port == 0) text::print(stderr, "rubric: zep:{}\n", air.port());
       while (!lines::stop_requested() && !result_.stopped) {
         const Bytes datagram = air.receive(std::chrono::steady_clock::now() + kAirPatience);
         Packet packet;
@@ -463,9 +463,8 @@ void add_capture_options(Command& app, InputOptions& options) {
       .one_of({"auto", "crc", "cc24xx", "none"})
       .show_default();
   app.add_option("--link-type", options.links,
-                 "Read a link type from 147 to 162, to which everybody gives a meaning of their "
-                 "own, as serial, sf, radio, radio-fcs, radio-phy, radio-tap or ethernet: "
-                 "149=radio-fcs")
+                 "Read a user-defined link type, 147 to 162, as serial, sf, radio, radio-fcs, "
+                 "radio-phy, radio-tap or ethernet: 149=radio-fcs")
       .check(check_user_link)
       .repeatable();
 }

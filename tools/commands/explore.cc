@@ -33,7 +33,7 @@ using explore::Mask;
 using explore::Progress;
 using explore::Result;
 using explore::Scope;
-using report::Json;
+using text::Json;
 
 struct ExploreOptions {
   explore::Options network;
@@ -326,7 +326,7 @@ void run_explore(const ExploreOptions& options) {
   if (options.format == "json") {
     good = cli::write_file("-", json_of(options, result, verdict, text)) && good;
   } else if (trace_alone) {
-    report::print(stderr, "{}", text_of(result, verdict));
+    text::print(stderr, "{}", text_of(result, verdict));
     good = cli::write_file("-", text) && good;
   } else {
     good = cli::write_file("-", text_of(result, verdict)) && good;
@@ -376,7 +376,7 @@ void add_bounds(cli::Command& sub, ExploreOptions& options) {
   sub.add_option("--memory", options.memory,
                  "Stop, inconclusive, before the process takes more than this (k, M, G)")
       .check(size, "SIZE");
-  sub.add_flag("--exact", n.exact, "Keep apart states that differ in nothing that matters");
+  sub.add_flag("--exact", n.exact, "Do not merge states that differ in nothing that matters");
   n.threads = std::max(1U, std::thread::hardware_concurrency());
   sub.add_option("--threads", n.threads, "Run this many threads").between(1, 64).show_default();
 }

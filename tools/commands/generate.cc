@@ -33,7 +33,7 @@ using generate::Framed;
 using generate::FrameGenerator;
 using generate::Framer;
 using reflect::Route;
-using report::Json;
+using text::Json;
 
 Json error_json(const Error& error, const Json::Members& more = {}) {
   if (error.fault == Fault::kNone) return Json::raw("");
@@ -47,16 +47,6 @@ Json error_json(const Error& error, const Json::Members& more = {}) {
 Json number_json(const generate::NumberAt& number) {
   const std::string field = fmt::format("{}.{}", number.message->name, number.field->name);
   return Json::object({{"field", field}, {"offset", number.offset_bytes}, {"value", number.value}});
-}
-
-/// Joins the words with `between`.
-std::string joined(const std::vector<std::string>& words, std::string_view between) {
-  std::string text;
-  for (const std::string& word : words) {
-    if (!text.empty()) text += between;
-    text += word;
-  }
-  return text;
 }
 
 /// Returns the JSON line of a frame, schema rubric.generate/1, without its end. `offset`: where it
@@ -219,7 +209,7 @@ class Run {
     if (!options_.expect.empty()) expect = std::make_unique<CountedOutput>(options_.expect);
     begin(out);
     for (std::uint64_t i = 0; i < options_.count && out.open(); ++i) {
-      const std::string line = one(i, out);
+      const std::string line = write_frame(i, out);
       if (expect) expect->append(line + "\n");
     }
     text_.clear();
@@ -251,12 +241,12 @@ class Run {
       return true;
     });
     if (!left_out.empty()) {
-      report::print(stderr, "rubric: {} holds no radio frames: left out {}\n", options_.format,
-                    joined(left_out, ", "));
+      text::print(stderr, "rubric: {} holds no radio frames: left out {}\n", options_.format,
+                  fmt::join(left_out, ", "));
     }
     if (options_.count < messages_.size()) {
-      report::print(stderr, "rubric: {} of {} messages do not come up; --count {} has them all\n",
-                    messages_.size() - options_.count, messages_.size(), messages_.size());
+      text::print(stderr, "rubric: {} of {} messages do not come up; --count {} has them all\n",
+                  messages_.size() - options_.count, messages_.size(), messages_.size());
     }
     for (std::size_t i = messages_.size(); i > 1; --i) {
       std::swap(messages_[i - 1], messages_[frames_.random().below(i)]);
@@ -291,7 +281,7 @@ class Run {
   }
 
   /// Writes a frame; returns its expectation.
-  std::string one(std::uint64_t index, CountedOutput& out) {
+  std::string write_frame(std::uint64_t index, CountedOutput& out) {
     Framed framed = make(index);
     const std::uint64_t number = index + 1;
     if (!writer_) {

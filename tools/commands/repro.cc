@@ -102,7 +102,7 @@ void run_repro(const ReproOptions& options) {
   std::string text;
   std::string error;
   if (!cli::read_file(options.input, text, error)) {
-    report::print(stderr, "{}\n", error);
+    text::print(stderr, "{}\n", error);
     cli::exit_with(cli::kExitInput);
   }
   const Bytes bytes(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
@@ -112,8 +112,7 @@ void run_repro(const ReproOptions& options) {
   if (!cli::write_file(options.out, trace::print(repro.file))) {
     cli::exit_with(cli::kExitOutput);
   }
-  report::print(stderr, "{}\n",
-                repro.found.empty() ? "nothing is broken" : "broken: " + repro.found);
+  text::print(stderr, "{}\n", repro.found.empty() ? "nothing is broken" : "broken: " + repro.found);
   if (!repro.found.empty()) cli::exit_with(cli::kExitFindings);
 }
 
@@ -124,13 +123,13 @@ void add_repro(cli::Command& app) {
   cli::Command& sub =
       app.add_subcommand("repro", "Write an input of a stateful fuzz target as a trace");
   sub.footer(kReproFooter);
-  sub.add_option("fuzzer", options->fuzzer, "The fuzz target whose input it is")
+  sub.add_option("FUZZER", options->fuzzer, "The fuzz target whose input it is")
       .required()
       .one_of({"machine", "nodes", "network"});
-  sub.add_option("input", options->input, "The input; - is stdin").required().type_name("FILE");
+  sub.add_option("FILE", options->input, "The input; - is stdin").required();
   sub.add_option("--target", options->target, "Run machine, or machine:FLAW").show_default();
   sub.add_flag("--exact", options->exact,
-               "Ask for the machine's own numbers and bytes, not for what the rules ask for");
+               "Expect the machine's own numbers and bytes, not only what the rules ask for");
   sub.add_option("-o,--out", options->out, "Write the trace to this file; - is stdout")
       .show_default();
   sub.callback([options] { run_repro(*options); });

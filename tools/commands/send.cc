@@ -57,9 +57,9 @@ constexpr const char* kSendFooter =
     "    rubric send --as config --to serial@/dev/ttyUSB0:telosb\n"
     "  rubric send commands.jsonl --to sf@localhost:9002 --listen 2   # and what is answered\n"
     "  rubric decode run.pcapng --filter 'direction==inbound' --format jsonl | rubric send\n"
-    "Exit codes: 0 all packets confirmed (or given to the forwarder), 64 usage, 66 some line or\n"
-    "file could not be read or encoded, and was not sent, 3 a packet was not confirmed, or the\n"
-    "line cannot be had or is gone.";
+    "Exit codes: 0 all packets confirmed (or given to the forwarder), 3 a packet was not\n"
+    "confirmed, or the line cannot be had or is gone, 64 usage, 66 some line or file could not be\n"
+    "read or encoded, and was not sent.";
 
 lines::Address address_of(const SendOptions& options) {
   const std::string text = options.to.empty() ? lines::default_address() : options.to;
@@ -136,7 +136,7 @@ class Send {
       return !lines::stop_requested();
     };
     const auto send = [this](EncodedLines& lines, const OwnedPacket& packet,
-                             const std::string& place) { return one(lines, packet, place); };
+                             const std::string& place) { return send_line(lines, packet, place); };
     EncodedLines lines(options_.lines, encoder_, send, wait_for_line);
     return lines.all();
   }
@@ -161,7 +161,7 @@ class Send {
   }
 
   // Sends one packet. Returns whether to go on.
-  bool one(EncodedLines& lines, const OwnedPacket& owned, const std::string& place) {
+  bool send_line(EncodedLines& lines, const OwnedPacket& owned, const std::string& place) {
     const Packet packet = owned.view();
     const std::string why = refusal(packet);
     if (!why.empty()) {
@@ -175,7 +175,7 @@ class Send {
     }
     if (packets_ > 0) sender_.hear(steady_clock::now() + Milliseconds{options_.interval_ms});
     if (lines::stop_requested()) {
-      report::print(stderr, "rubric: {}: stopped before this was sent\n", place);
+      text::print(stderr, "rubric: {}: stopped before this was sent\n", place);
       unsent_ = true;
       return false;
     }
@@ -185,9 +185,9 @@ class Send {
     if (result.done) return true;
     unsent_ = true;
     if (options_.keep_going && !lines::stop_requested()) return true;
-    report::print(stderr, "rubric: {}: {}; nothing after it is sent{}\n", place,
-                  lines::stop_requested() ? "stopped" : "not confirmed",
-                  lines::stop_requested() ? "" : " (--keep-going would)");
+    text::print(stderr, "rubric: {}: {}; nothing after it is sent{}\n", place,
+                lines::stop_requested() ? "stopped" : "not confirmed",
+                lines::stop_requested() ? "" : " (--keep-going would)");
     return false;
   }
 
@@ -215,7 +215,7 @@ class Send {
     }
     text += '\n';
     if (options_.format == "jsonl") {  // Its lines are the frames that come alone.
-      report::print(stderr, "{}", text);
+      text::print(stderr, "{}", text);
       return;
     }
     output_.buffer().append(text);
@@ -240,7 +240,7 @@ class Send {
   }
 
   void line_is_gone(const char* what) {
-    report::print(stderr, "rubric: {}: {}\n", name_, what);
+    text::print(stderr, "rubric: {}: {}\n", name_, what);
     unsent_ = true;
   }
 
@@ -256,7 +256,7 @@ class Send {
       text += ", " + counted(left_out_, "frame", "frames") + " without a packet left out";
     }
     if (options_.listen_s) text += ", " + fmt::format("{} came", frames_);
-    report::print(stderr, "rubric: {}\n", text);
+    text::print(stderr, "rubric: {}\n", text);
   }
 
   const SendOptions& options_;
