@@ -63,7 +63,8 @@ class Closure {
 
   // Returns false if that becomes too much.
   bool grow() {
-    for (std::size_t before = 0; before != nodes_->outcomes();) {
+    std::size_t before = 0;
+    do {
       before = nodes_->outcomes();
       for (std::size_t node = 0; node < nodes_->count(); ++node) {
         for (std::size_t i = 0; i < of_[node].states.size(); ++i) {
@@ -77,7 +78,7 @@ class Closure {
           if (nodes_->full() || nodes_->outcomes() > kOutcomesMax) return false;
         }
       }
-    }
+    } while (before != nodes_->outcomes());
     return true;
   }
 

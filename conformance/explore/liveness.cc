@@ -16,10 +16,12 @@ namespace {
 
 using Vertex = std::uint32_t;
 constexpr Vertex kNoVertex = std::numeric_limits<Vertex>::max();
+constexpr std::size_t kVerticesMax = 5'000'000;  // About a gigabyte.
 
-/// What fairness is asked of: an event of a node, or the hearing of a copy by a node.
+/// What fairness is asked of: an event of a node, the hearing of a copy by a node, or its end.
 using Claim = std::uint64_t;
 constexpr Claim kHearing = Claim{1} << 63;
+constexpr Claim kEnding = Claim{1} << 62;
 
 Claim hearing(Copy copy, std::size_t node) { return kHearing | Claim{copy.bits} << 8 | node; }
 Claim own_event(std::size_t node, std::uint32_t what) { return Claim{what} << 8 | node; }
@@ -35,7 +37,9 @@ std::vector<Claim> claims_of(const Move& move) {
     const bool done = move.what == event::kDoneUnacked;
     out.push_back(own_event(move.node, done ? event::kDoneAcked : move.what));
   }
+  if (move.kind == Move::Kind::kLose) out.push_back(kEnding | move.copy.bits);
   if (move.kind != Move::Kind::kDeliver) return out;
+  if (!move.stays) out.push_back(kEnding | move.copy.bits);
   for (std::size_t i = 0; i < kNodesMax; ++i) {
     if ((move.hearers >> i & 1) != 0) out.push_back(hearing(move.copy, i));
   }
@@ -206,6 +210,7 @@ class LoopSearch {
       if (options.states_max != 0 && states_.size() > options.states_max) {
         return "as many states as --max-states allows";
       }
+      if (states_.size() > kVerticesMax) return "more than 5 million states for --liveness";
       packer_.unpack(states_[v].packed, world);
       network_.successors(world, ways_on_);
       transitions_ += ways_on_.size();

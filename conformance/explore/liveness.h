@@ -5,9 +5,9 @@
 // A run counts only if it is fair:
 //   - What a node can do by itself all the time, it does: a timer that stays set fires, a
 //     transmission ends. (Weak fairness. Calls, sends and reboots come from outside and need not.)
+//   - So is doubling: a frame does not stay in the air for ever, where it would hold others back.
 //   - Loss is fair: a frame that is in the air again and again is heard again and again, by each
-//   node
-//     that it is addressed to. (Strong fairness.) Losing every frame for ever is no run of a
+//     node that it is addressed to. (Strong fairness.) Losing every frame for ever is no run of a
 //     network that one would want to judge.
 // In a finite graph a run that never ends stays, from some moment on, in one strongly connected
 // part of it, and sees all of some such part again and again. So there is a fair run in which
@@ -23,7 +23,7 @@
 // and every event that the conditions ask for.
 //
 // Neither symmetry nor partial order is used: in an orbit one mote's step passes for another's, and
-// fairness asks who. All states and steps are kept in memory, some 40 bytes and 4 bytes each.
+// fairness asks who. All states and steps are kept in memory, so five million states are the most.
 #pragma once
 
 #include <optional>

@@ -312,11 +312,12 @@ class Search {
       limit_ = kNoMemory;
     }
     if (!alike) depth_ = 0;  // Then nothing was proved.
-    if (*limit_ != '\0') return;
-    if (!alike) limit_ = "motes or sinks that are not treated alike; give --no-symmetry";
+    if (!alike && limit_ != kNoMemory)
+      limit_ = "motes or sinks that are not treated alike; give --no-symmetry";
     const bool ended = std::any_of(workers_.begin(), workers_.end(),
                                    [](const auto& worker) { return worker->ended; });
-    if (by_mote_ && !ended) limit_ = "motes whose steps never end; give --no-partial-order";
+    if (by_mote_ && !ended && *limit_ == '\0')
+      limit_ = "motes whose steps never end; give --no-partial-order";
   }
 
   bool found_violation() const {

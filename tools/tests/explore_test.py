@@ -139,7 +139,7 @@ class Explore(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stdout)
 
     def test_a_limit_is_inconclusive(self):
-        done = explore("--motes", "2", *FAULTS, "--max-states", "500")
+        done = explore("--motes", "2", *FAULTS, "--max-states", "300")
         self.assertEqual(done.returncode, 3)
         self.assertIn("verdict      inconclusive: as many states", done.stdout)
         depth = re.search(r"^depth +(\d+)$", done.stdout, re.M)[1]

@@ -161,7 +161,7 @@ TEST(Explore, DeployedProfileHoldsByItsOwnRules) {
 
 TEST(Explore, StopsAtItsLimit) {
   Options options = network(2, 1);
-  options.states_max = 1000;
+  options.states_max = 300;
   const Result result = run(options);
   EXPECT_FALSE(result.complete);
   EXPECT_STRNE(result.limit, "");
