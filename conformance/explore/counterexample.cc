@@ -254,7 +254,12 @@ trace::File counterexample(Nodes& nodes, const Path& path, const Title& title) {
   trace::Case one(title.case_name);
   Walk walk(nodes, one);
   walk.headers(file);
-  for (const Move& move : path.moves) walk.move(move);
+  for (std::size_t i = 0; i < path.moves.size(); ++i) {
+    if (path.loop == i)
+      walk.comment("Loop: what follows, up to the end of the loop, repeats for ever.");
+    walk.move(path.moves[i]);
+  }
+  if (path.loop) walk.comment("End of the loop: all nodes and frames are as at its beginning.");
   for (const PropertyInfo& p : properties()) {
     if ((path.violated & bit(p.property)) == 0) continue;
     std::string rules;
@@ -264,7 +269,7 @@ trace::File counterexample(Nodes& nodes, const Path& path, const Title& title) {
     }
     walk.comment("Broken: " + std::string(p.name) + " (" + rules + "): " + p.sentence);
   }
-  walk.silence();
+  if (!path.loop) walk.silence();
   file.cases.push_back(std::move(one));
   return file;
 }

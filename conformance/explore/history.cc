@@ -167,7 +167,8 @@ class Observer {
     if (h.asked && h.present_seq != request->seq_num()) h.offers.clear();
     h.asked = true;
     h.present_seq = request->seq_num();
-    ++h.requests;
+    // One too many is enough to know: a mote that asks for ever has few states.
+    if (h.requests <= profile().join_requests_max) ++h.requests;
     if (h.requests > 1) reach(Goal::kRetried);
     if (h.requests > profile().join_requests_max) breaks(Property::kRequestsBounded);
   }

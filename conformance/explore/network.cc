@@ -104,17 +104,6 @@ bool Healing::succeeds(const World& world, bool& weak) {
   return all;
 }
 
-namespace {
-
-constexpr std::size_t kNodeBytes = 3;
-
-std::uint64_t fold(std::uint64_t a, std::uint64_t b) {
-  const auto product = static_cast<unsigned __int128>(a) * b;
-  return static_cast<std::uint64_t>(product) ^ static_cast<std::uint64_t>(product >> 64);
-}
-
-}  // namespace
-
 Network::Network(Nodes& nodes) : nodes_(nodes), outcomes_(nodes), count_(nodes.count()) {
   for (std::size_t i = 0; i < count_; ++i) am_address_[i] = nodes.config_of(i).id;
 }
@@ -125,27 +114,67 @@ World Network::initial() const {
   return world;
 }
 
-// Puts a copy in the air, unless as many of the same are in flight as may be.
-void Network::fly(World& world, Copy copy) {
-  const Options& options = nodes_.options();
-  std::size_t same = 0;
+// Returns whether two frames of one sender keep their order: some node can hear both.
+bool Network::ordered(Copy a, Copy b) const {
+  if (nodes_.options().reorder) return a == b;
+  const std::uint16_t one = nodes_.frame(a.frame()).dest;
+  const std::uint16_t other = nodes_.frame(b.frame()).dest;
+  return one == other || one == machine::kAmBroadcast || other == machine::kAmBroadcast;
+}
+
+// Frames of one sender that no node can hear both of have no order, so that the air does not
+// remember what nobody can tell. Of all orders that keep the rest in order the one with the lowest
+// numbers first is kept: a new copy goes before the first with a higher number, behind all that it
+// may not overtake.
+void Network::put(World& world, Copy copy) const {
   std::size_t place = 0;
+  bool placed = false;
   for (std::size_t i = 0; i < world.copies; ++i) {
     const Copy other = world.copy[i];
-    if (other == copy) ++same;
-    const bool before =
-        other.sender() < copy.sender() ||
-        (other.sender() == copy.sender() && (!options.reorder || other.frame() <= copy.frame()));
-    if (before) place = i + 1;
-  }
-  if (same >= options.in_flight) return;
-  if (world.copies == World::kCopiesMax) {
-    overflowed_ = true;
-    return;
+    const bool mine = other.sender() == copy.sender();
+    if (other.sender() < copy.sender() || (mine && ordered(other, copy))) {
+      place = i + 1;
+      placed = false;
+    } else if (mine && !placed && other.frame() < copy.frame()) {
+      place = i + 1;
+    } else {
+      placed = true;
+    }
   }
   std::memmove(&world.copy[place + 1], &world.copy[place], (world.copies - place) * sizeof(Copy));
   world.copy[place] = copy;
   ++world.copies;
+}
+
+void Network::fly(World& world, Copy copy) {
+  std::size_t same = 0;
+  std::size_t own = 0;
+  for (std::size_t i = 0; i < world.copies; ++i) {
+    same += world.copy[i] == copy ? 1 : 0;
+    own += world.copy[i].sender() == copy.sender() ? 1 : 0;
+  }
+  if (same >= nodes_.options().in_flight) return;
+  if (world.copies == World::kCopiesMax || own == World::kOwnCopiesMax) {
+    overflowed_ = true;
+  } else {
+    put(world, copy);
+  }
+}
+
+// Removes a copy. What it held back may now stand before others, so its sender's are put again.
+void Network::take(World& world, std::size_t i) const {
+  const Copy gone = world.copy[i];
+  world.erase(i);
+  bool passed = false;
+  bool held_back = false;
+  for (std::size_t k = i; k < world.copies && world.copy[k].sender() == gone.sender(); ++k) {
+    held_back |= passed && ordered(gone, world.copy[k]);
+    passed |= !ordered(gone, world.copy[k]);
+  }
+  if (!held_back) return;
+  const World old = world;
+  world.copies = 0;
+  for (std::size_t k = 0; k < old.copies; ++k) put(world, old.copy[k]);
 }
 
 NodeSet Network::addressed(Copy copy) const {
@@ -208,9 +237,13 @@ void Network::node_moves(const World& world, std::size_t node, Successors& out) 
   if (f.may_reboot) add_step(world, node, event::kReboot, out);
 }
 
-// Returns whether no earlier frame of its sender is still in flight.
+// Returns whether no frame that it may not overtake is still in flight.
 bool Network::is_first(const World& world, std::size_t i) const {
-  return nodes_.options().reorder || i == 0 || world.copy[i - 1].sender() != world.copy[i].sender();
+  for (std::size_t k = 0; k < i; ++k) {
+    const bool mine = world.copy[k].sender() == world.copy[i].sender();
+    if (mine && ordered(world.copy[k], world.copy[i])) return false;
+  }
+  return true;
 }
 
 // Returns whether a copy that is heard may be heard again.
@@ -234,7 +267,7 @@ void Network::deliver(const World& world, std::size_t i, NodeSet hearers, bool s
     next.move.hearers = hearers;
     next.move.stays = stays;
     next.move.confirmed = confirmed;
-    if (!stays) next.world.erase(i);
+    if (!stays) take(next.world, i);
     if (stays && nodes_.options().dups != 0) ++next.world.doubled;
     hear(next.world, copy, hearers, &next);
     if (confirmed) apply(next.world, copy.sender(), event::kDoneAcked, &next);
@@ -244,8 +277,7 @@ void Network::deliver(const World& world, std::size_t i, NodeSet hearers, bool s
 void Network::copy_moves(const World& world, std::size_t i, Successors& out) {
   const Copy copy = world.copy[i];
   const Options& options = nodes_.options();
-  const bool again = i > 0 && world.copy[i - 1] == copy;  // The same as the one before.
-  if (again || !is_first(world, i)) return;
+  if (!is_first(world, i)) return;
   const NodeSet all = addressed(copy);
   for (unsigned hearers = all; hearers != 0; hearers = (hearers - 1) & all) {
     if (hearers != all && !options.loss) continue;  // Without loss all hear it.
@@ -258,7 +290,7 @@ void Network::copy_moves(const World& world, std::size_t i, Successors& out) {
     Successor& next = out.push(world);
     next.move.kind = Move::Kind::kLose;
     next.move.copy = copy;
-    next.world.erase(i);
+    take(next.world, i);
   }
 }
 
@@ -273,8 +305,8 @@ void Network::collide(const World& world, std::size_t i, std::size_t k, Successo
   next.move.other = b;
   next.move.hearers = static_cast<NodeSet>(addressed(a) & ~common);
   next.move.other_hearers = static_cast<NodeSet>(addressed(b) & ~common);
-  next.world.erase(k);
-  next.world.erase(i);
+  take(next.world, k);
+  take(next.world, i);
   hear(next.world, a, next.move.hearers, &next);
   hear(next.world, b, next.move.other_hearers, &next);
 }
@@ -321,32 +353,31 @@ Mask Network::violated(const World& world, const Successors& ways_on) {
       if ((f.listed >> m & 1) != 0 && !acked) broken |= bit(Property::kListedAcked);
     }
   }
-  if (world.copies == 0) {
-    // New calls and reboots come from outside: the node itself must have a next step.
-    const bool way_on = std::any_of(ways_on.begin(), ways_on.end(), [](const Successor& s) {
-      return s.move.what != event::kCall && s.move.what != event::kReboot &&
-             (s.move.what < event::kSend || s.move.what >= event::kFrame);
-    });
-    const bool rest = at_rest(world);
+  if (rests(world, ways_on)) {
     const bool ack_times_out = options.profile.ack_timeout_ticks != 0;
-    if (!way_on && !rest) {
+    if (!at_rest(world)) {
       if (open) broken |= bit(Property::kOneTerminal);
       if (open_sends && ack_times_out) broken |= bit(Property::kReliableEnds);
       if (open || !open_sends || ack_times_out) broken |= bit(Property::kNoDeadlock);
     }
-    bool weak = false;
-    if (!way_on && (options.properties & bit(Property::kJoinSucceeds)) != 0 &&
-        !heals(world, weak)) {
-      broken |= bit(Property::kJoinSucceeds);
-    }
-    if (weak) ++known_weak_;
+    broken |= broken_by_healing(world);
   }
   return broken & options.properties;
 }
 
-bool Network::heals(const World& world, bool& weak) {
-  Healing healing(*this);
-  return healing.succeeds(world, weak);
+bool Network::rests(const World& world, const Successors& ways_on) const {
+  return world.copies == 0 && std::none_of(ways_on.begin(), ways_on.end(), [](const Successor& s) {
+           return s.move.what != event::kCall && s.move.what != event::kReboot &&
+                  (s.move.what < event::kSend || s.move.what >= event::kFrame);
+         });
+}
+
+Mask Network::broken_by_healing(const World& world) {
+  const Mask asked = nodes_.options().properties & bit(Property::kJoinSucceeds);
+  bool weak = false;
+  const bool broken = asked != 0 && !Healing(*this).succeeds(world, weak);
+  if (weak) ++known_weak_;
+  return broken ? asked : 0;
 }
 
 Mask Network::goals(const World& world) const {
@@ -372,45 +403,6 @@ Mask Network::goals(const World& world) const {
     reached |= bit(one ? Goal::kSameIsland : Goal::kTwoIslands);
   }
   return reached;
-}
-
-std::size_t Network::pack(const World& world, std::uint8_t* out) const {
-  std::uint8_t* p = out;
-  for (std::size_t i = 0; i < count_; ++i, p += kNodeBytes) std::memcpy(p, &world.node[i], 3);
-  *p++ = static_cast<std::uint8_t>(world.copies);
-  *p++ = static_cast<std::uint8_t>(world.doubled);
-  for (std::size_t i = 0; i < world.copies; ++i, p += 3) std::memcpy(p, &world.copy[i], 3);
-  return static_cast<std::size_t>(p - out);
-}
-
-std::size_t Network::unpack(const std::uint8_t* bytes, World& world) const {
-  const std::uint8_t* p = bytes;
-  for (std::size_t i = 0; i < count_; ++i, p += kNodeBytes) {
-    world.node[i] = 0;
-    std::memcpy(&world.node[i], p, kNodeBytes);
-  }
-  world.copies = *p++;
-  world.doubled = *p++;
-  for (std::size_t i = 0; i < world.copies; ++i, p += 3) {
-    std::uint32_t bits = 0;
-    std::memcpy(&bits, p, 3);
-    world.copy[i] = {bits};
-  }
-  return static_cast<std::size_t>(p - bytes);
-}
-
-std::uint64_t Network::fingerprint(const World& world) const {
-  std::uint64_t hash = 0x9E3779B97F4A7C15U ^ (world.doubled << 8 | world.copies);
-  for (std::size_t i = 0; i < count_; i += 2) {
-    const std::uint64_t pair = std::uint64_t{world.node[i]} << 32 | world.node[i + 1];
-    hash = fold(hash ^ pair, 0xE7037ED1A0B428DBU);
-  }
-  for (std::size_t i = 0; i < world.copies; i += 2) {
-    const std::uint64_t second = i + 1 < world.copies ? world.copy[i + 1].bits : 0;
-    hash = fold(hash ^ (std::uint64_t{world.copy[i].bits} << 32 | second), 0x8EBC6AF09C88C6E3U);
-  }
-  hash = fold(hash, 0x589965CC75374CC3U);
-  return hash == 0 ? 1 : hash;
 }
 
 }  // namespace rubric::explore

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <utility>
 #include <vector>
 
 #include "conformance/explore/nodes.h"
@@ -25,10 +26,11 @@ struct Copy {
 /// A set of nodes, one bit each.
 using NodeSet = std::uint8_t;
 
-/// Nodes and the frames in flight between them. Copies are ordered by sender, then by sending, or,
-/// where the air does not keep its order, by frame.
+/// Nodes and the frames in flight between them. Copies are ordered by sender, then by sending, as
+/// far as that can be told, else by frame: see Network::fly.
 struct World {
   static constexpr std::size_t kCopiesMax = 32;
+  static constexpr std::size_t kOwnCopiesMax = 14;  ///< Of one sender.
   std::array<NodeId, kNodesMax> node{};
   std::uint32_t copies = 0;
   std::uint32_t doubled = 0;  ///< How often a copy stayed, if that is limited.
@@ -89,6 +91,15 @@ class Successors {
     next.violated = next.goals = 0;
     return next;
   }
+  /// Leaves out those for which `wanted` returns false.
+  template <class Wanted>
+  void keep(const Wanted& wanted) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < count_; ++i) {
+      if (wanted(items_[i])) std::swap(items_[kept++], items_[i]);
+    }
+    count_ = kept;
+  }
   std::size_t size() const { return count_; }
   const Successor& operator[](std::size_t i) const { return items_[i]; }
   const Successor* begin() const { return items_.data(); }
@@ -105,10 +116,16 @@ class Network {
   explicit Network(Nodes& nodes);
 
   World initial() const;
+  /// Puts a copy in the air, unless as many of the same are in flight as may be.
+  void fly(World& world, Copy copy);
   /// Fills in all successors.
   void successors(const World& world, Successors& out);
   /// Returns the properties that this state itself breaks. `ways_on`: its successors.
   Mask violated(const World& world, const Successors& ways_on);
+  /// Returns whether nothing happens any more but what comes from outside: calls, reboots, sends.
+  bool rests(const World& world, const Successors& ways_on) const;
+  /// Returns what breaks if faults stop in a state that rests. violated() has asked it already.
+  Mask broken_by_healing(const World& world);
   Mask goals(const World& world) const;
   /// Returns whether nothing is left to do: no call open, nothing in flight or waiting.
   bool at_rest(const World& world) const;
@@ -119,9 +136,8 @@ class Network {
   /// it.
   std::uint64_t known_weak() const { return known_weak_; }
 
-  std::size_t pack(const World& world, std::uint8_t* out) const;
-  std::size_t unpack(const std::uint8_t* bytes, World& world) const;
-  std::uint64_t fingerprint(const World& world) const;
+  /// Puts a copy in its place.
+  void put(World& world, Copy copy) const;
 
  private:
   friend class Healing;
@@ -137,11 +153,11 @@ class Network {
   void hear(World& world, Copy copy, NodeSet hearers, Successor* successor);
   NodeSet addressed(Copy copy) const;
   void apply(World& world, std::size_t node, std::uint32_t what, Successor* successor);
-  void fly(World& world, Copy copy);
+  bool ordered(Copy a, Copy b) const;
+  void take(World& world, std::size_t i) const;
   bool may_stay(const World& world) const;
   bool is_first(const World& world, std::size_t i) const;
   bool in_flight(const World& world, Copy copy) const;
-  bool heals(const World& world, bool& weak);
 
   Nodes& nodes_;
   OutcomeCache outcomes_;

@@ -74,9 +74,9 @@ void forget_the_past(machine::State& state) {
 }  // namespace
 
 Nodes::Nodes(const Options& options) : options_(options) {
-  frames_.push(machine::Transmit{});  // Number 0 is no frame.
+  frames_.push({});  // Number 0 is no frame.
   for (std::size_t i = 0; i < count(); ++i) {
-    initial_[i] = intern(NodeState{machine::start(config_of(i)), {}});
+    initial_[i] = intern(NodeState{machine::start(config_of(i)), {}}, {});
   }
 }
 
@@ -199,7 +199,9 @@ void Nodes::step(NodeState& node, const machine::Event& event, Outcome& outcome)
   outcome.goals |= noted.goals;
   for (const machine::Transmit& transmit : actions.transmits()) {
     if (transmit.link != Link::kRadio) continue;
-    const FrameId id = intern(transmit);
+    Origin origin = outcome.of;
+    origin.frame = outcome.frames;
+    const FrameId id = intern(transmit, origin);
     if (transmit.link_ack) m.on_air = id;
     if (outcome.frames == Outcome::kFramesMax) {
       outcome.overflow = true;
@@ -212,7 +214,9 @@ void Nodes::step(NodeState& node, const machine::Event& event, Outcome& outcome)
 Outcome Nodes::compute(NodeId id, std::uint32_t what) {
   NodeState node = states_[id].node;
   Outcome outcome;
-  const machine::Transmit* frame = what >= event::kFrame ? &frames_[what - event::kFrame] : nullptr;
+  outcome.of = {id, what, 0};
+  const machine::Transmit* frame =
+      what >= event::kFrame ? &this->frame(static_cast<FrameId>(what - event::kFrame)) : nullptr;
   step(node, event_of(node.state, node.monitor, what, frame), outcome);
   // A line is free again at once, unless a link ack may still come.
   for (int i = 0; !options_.busy && i < 64; ++i) {
@@ -225,7 +229,7 @@ Outcome Nodes::compute(NodeId id, std::uint32_t what) {
     }
   }
   if (!options_.exact) forget_the_past(node.state);
-  outcome.next = intern(node);
+  outcome.next = intern(node, outcome.of);
   outcome.violated &= options_.properties;
   return outcome;
 }
@@ -244,7 +248,7 @@ const Outcome& Nodes::outcome(NodeId node, std::uint32_t what) {
   return outcomes_.push(computed);
 }
 
-NodeId Nodes::intern(const NodeState& node) {
+NodeId Nodes::intern(const NodeState& node, const Origin& origin) {
   const std::uint64_t hash = hash_of(node);
   const auto [begin, end] = state_ids_.equal_range(hash);
   for (auto it = begin; it != end; ++it) {
@@ -255,12 +259,12 @@ NodeId Nodes::intern(const NodeState& node) {
     return 0;
   }
   const auto id = static_cast<NodeId>(states_.size());
-  states_.push({node, facts_of(node)});
+  states_.push({node, facts_of(node), origin});
   state_ids_.emplace(hash, id);
   return id;
 }
 
-FrameId Nodes::intern(const machine::Transmit& frame) {
+FrameId Nodes::intern(const machine::Transmit& frame, const Origin& origin) {
   const std::string key = key_of(frame);
   const auto found = frame_ids_.find(key);
   if (found != frame_ids_.end()) return found->second;
@@ -269,7 +273,7 @@ FrameId Nodes::intern(const machine::Transmit& frame) {
     return 1;
   }
   const auto id = static_cast<FrameId>(frames_.size());
-  frames_.push(frame);
+  frames_.push({frame, origin});
   frame_ids_.emplace(key, id);
   return id;
 }
@@ -279,6 +283,8 @@ NodeFacts Nodes::facts_of(const NodeState& node) const {
   const Monitor& m = node.monitor;
   const bool mote = s.config.role == Role::kMote;
   NodeFacts facts;
+  facts.node = static_cast<std::uint8_t>(mote ? s.config.id - kFirstMoteId
+                                              : options_.motes + s.config.island - kFirstIsland);
   for (const machine::DueTimer& timer : machine::timers(s)) {
     if (timer.timer.kind == machine::TimerKind::kJoin) facts.join_timer = true;
     if (timer.timer.kind == machine::TimerKind::kAck) ++facts.ack_timers;
@@ -307,7 +313,7 @@ NodeFacts Nodes::facts_of(const NodeState& node) const {
 }
 
 std::size_t Nodes::memory_bytes() const {
-  return states_.size() * (sizeof(Entry) + 48) + frames_.size() * (sizeof(machine::Transmit) + 96) +
+  return states_.size() * (sizeof(Entry) + 48) + frames_.size() * (sizeof(Frame) + 96) +
          outcomes_.size() * (sizeof(Outcome) + 32);
 }
 

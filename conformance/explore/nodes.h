@@ -73,8 +73,17 @@ struct NodeState {
   friend bool operator==(const NodeState&, const NodeState&) = default;
 };
 
+/// The step that first made a node's state or a frame: an event of a node.
+struct Origin {
+  static constexpr std::uint32_t kStart = ~std::uint32_t{0};
+  NodeId before = 0;            ///< The node before the step,
+  std::uint32_t what = kStart;  ///< and its event; kStart: it is how a node begins.
+  std::uint8_t frame = 0;       ///< Of the frames that it sent, for a frame.
+};
+
 /// The facts about a node's state that the network needs.
 struct NodeFacts {
+  std::uint8_t node = 0;  ///< Whose state it is.
   bool join_timer = false;
   bool may_call = false;
   bool may_reboot = false;
@@ -90,6 +99,7 @@ struct NodeFacts {
   std::uint8_t listed = 0;      ///< For a sink: the motes that it lists, as bits.
   std::uint8_t reboots = 0;
   FrameId on_air = 0;  ///< The frame whose link ack it awaits.
+  friend bool operator==(const NodeFacts&, const NodeFacts&) = default;
 };
 
 /// The result of an event at a node.
@@ -101,12 +111,14 @@ struct Outcome {
   bool overflow = false;  ///< More frames than fit: the search is not complete.
   std::uint8_t frames = 0;
   std::array<FrameId, kFramesMax> frame{};  ///< Sent on the radio, in order.
+  Origin of;                                ///< The step.
 };
 
 /// A message that a node may send in full scope.
 struct SendChoice {
   machine::Address dest;
   bool reliable = false;
+  friend bool operator==(const SendChoice&, const SendChoice&) = default;
 };
 
 class Nodes {
@@ -122,11 +134,16 @@ class Nodes {
 
   const NodeState& state(NodeId id) const { return states_[id].node; }
   const NodeFacts& facts(NodeId id) const { return states_[id].facts; }
-  const machine::Transmit& frame(FrameId id) const { return frames_[id]; }
+  const Origin& origin(NodeId id) const { return states_[id].origin; }
+  const machine::Transmit& frame(FrameId id) const { return frames_[id].transmit; }
+  const Origin& frame_origin(FrameId id) const { return frames_[id].origin; }
 
   /// Returns the outcome, at a stable address. Thread-safe.
   const Outcome& outcome(NodeId node, std::uint32_t what);
 
+  std::size_t outcomes() const { return outcomes_.size(); }
+  /// Returns the i-th outcome that was computed.
+  const Outcome& outcome_at(std::size_t i) const { return outcomes_[i]; }
   std::size_t states() const { return states_.size(); }
   std::size_t frames() const { return frames_.size() - 1; }
   std::size_t memory_bytes() const;
@@ -145,6 +162,11 @@ class Nodes {
   struct Entry {
     NodeState node;
     NodeFacts facts;
+    Origin origin;
+  };
+  struct Frame {
+    machine::Transmit transmit;
+    Origin origin;
   };
   Outcome compute(NodeId node, std::uint32_t what);
   void step(NodeState& node, const machine::Event& event, Outcome& outcome);
@@ -152,14 +174,14 @@ class Nodes {
                 const machine::Actions& actions, const machine::State& after) const;
   bool same_as_machine(const NodeState& before, const machine::Event& event, const NodeState& after,
                        const machine::Actions& actions) const;
-  NodeId intern(const NodeState& node);
-  FrameId intern(const machine::Transmit& frame);
+  NodeId intern(const NodeState& node, const Origin& origin);
+  FrameId intern(const machine::Transmit& frame, const Origin& origin);
   NodeFacts facts_of(const NodeState& node) const;
 
   Options options_;
   std::mutex mutex_;
   ChunkedList<Entry, 64, 65536> states_;
-  ChunkedList<machine::Transmit, 256, 256> frames_;
+  ChunkedList<Frame, 256, 256> frames_;
   ChunkedList<Outcome, 1024, 65536> outcomes_;
   std::unordered_multimap<std::uint64_t, NodeId> state_ids_;
   std::unordered_map<std::string, FrameId> frame_ids_;

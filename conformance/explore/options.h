@@ -39,6 +39,9 @@ struct Options {
   std::uint8_t sends = 1;      ///< Messages of each node, in full scope.
   std::uint8_t dups = 0;       ///< Frames heard again, in all; 0: any number.
   std::uint8_t in_flight = 1;  ///< Copies of one frame on their way to one node.
+  bool symmetry = true;        ///< Takes one for all states that differ in who is who (symmetry.h).
+  bool partial_order = true;   ///< Mote by mote, where their steps are independent.
+  bool liveness = false;       ///< Looks for fair runs that never end, too (liveness.h).
   Mask properties = kAllProperties;
   unsigned threads = 1;
   std::uint64_t states_max = 0;        ///< 0: no limit.

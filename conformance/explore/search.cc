@@ -1,13 +1,9 @@
 #include "conformance/explore/search.h"
 
-#include <sys/mman.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstdint>
-#include <fstream>
 #include <limits>
 #include <memory>
 #include <new>
@@ -15,153 +11,15 @@
 #include <utility>
 #include <vector>
 
+#include "conformance/explore/frontier.h"
+#include "conformance/explore/independence.h"
+#include "conformance/explore/liveness.h"
 #include "conformance/explore/network.h"
+#include "conformance/explore/sites.h"
+#include "conformance/explore/visited.h"
 
 namespace rubric::explore {
 namespace {
-
-// States that wait to be expanded, packed one after the other.
-
-/// The state, and the index among its successors, from which a state was reached first.
-struct PathLink {
-  static constexpr std::uint16_t kStart = 0xFFFF;
-  std::uint32_t index = 0;  ///< Index among the states of its thread.
-  std::uint16_t thread = 0;
-  std::uint16_t way = kStart;
-};
-
-/// Neighbouring states of one thread.
-struct Chunk {
-  const std::uint8_t* bytes = nullptr;
-  std::size_t states = 0;
-  std::uint32_t first_index = 0;
-  std::uint8_t thread = 0;
-};
-
-class Frontier {
- public:
-  void add(const Network& network, const World& world, std::uint32_t index, std::uint8_t thread) {
-    if (states_ % kChunkStates == 0) marks_.push_back({bytes_.size(), index, thread});
-    ++states_;
-    std::array<std::uint8_t, kPackedMax> packed;
-    const std::size_t size = network.pack(world, packed.data());
-    bytes_.insert(bytes_.end(), packed.data(), packed.data() + size);
-  }
-  std::size_t states() const { return states_; }
-  const std::vector<std::uint8_t>& bytes() const { return bytes_; }
-  /// Appends its chunks, which stay valid while it is neither moved nor added to.
-  void chunks(std::vector<Chunk>& out) const {
-    for (std::size_t i = 0; i < marks_.size(); ++i) {
-      const bool last = i + 1 == marks_.size();
-      const std::size_t states = last ? states_ - i * kChunkStates : kChunkStates;
-      out.push_back(
-          {bytes_.data() + marks_[i].offset_bytes, states, marks_[i].index, marks_[i].thread});
-    }
-  }
-
- private:
-  static constexpr std::size_t kChunkStates = 512;
-  static constexpr std::size_t kPackedMax = 3 * kNodesMax + 2 + 3 * World::kCopiesMax;
-  struct Mark {
-    std::size_t offset_bytes;
-    std::uint32_t index;
-    std::uint8_t thread;
-  };
-  std::vector<std::uint8_t> bytes_;
-  std::vector<Mark> marks_;
-  std::size_t states_ = 0;
-};
-
-// The set of visited states, as fingerprints of 64 bits: eight bytes a place.
-
-/// Open addressing; several threads insert at once without locks. It grows between batches, not
-/// during one.
-class Visited {
- public:
-  Visited() { allocate(std::size_t{1} << 18); }
-
-  /// Makes room for so many more. No thread may insert meanwhile.
-  void reserve(std::size_t more);
-  /// Returns how many more fit without growing.
-  std::size_t room() const;
-  /// Prefetches the place of a fingerprint, for an insert soon.
-  void prefetch(std::uint64_t fingerprint) const {
-    __builtin_prefetch(&slots_[fingerprint & mask_], 1, 1);
-  }
-  /// Inserts `fingerprint`, which is not 0. Returns true if it is new.
-  bool insert(std::uint64_t fingerprint) {
-    for (std::size_t i = fingerprint & mask_;; i = (i + 1) & mask_) {
-      std::uint64_t there = slots_[i].load(std::memory_order_relaxed);
-      if (there == fingerprint) return false;
-      if (there != 0) continue;
-      if (slots_[i].compare_exchange_strong(there, fingerprint, std::memory_order_relaxed)) {
-        return true;
-      }
-      if (there == fingerprint) return false;
-    }
-  }
-  /// Counts inserted states after a batch, since counting each would cost more than inserting.
-  void add_to_size(std::size_t inserted) { size_ += inserted; }
-  std::size_t size() const { return size_; }
-  std::size_t memory_bytes() const { return (mask_ + 1) * sizeof(std::uint64_t); }
-
- private:
-  struct Release {
-    std::size_t bytes;
-    void operator()(std::atomic<std::uint64_t>* slots) const;
-  };
-  void allocate(std::size_t slots);
-
-  std::unique_ptr<std::atomic<std::uint64_t>[], Release> slots_ {
-    nullptr, Release { 0 }
-  };
-  std::size_t mask_ = 0;
-  std::size_t size_ = 0;
-};
-
-constexpr std::size_t kFullPercent = 60;
-constexpr const char* kNoMemory = "more memory than the system has";
-
-void Visited::Release::operator()(std::atomic<std::uint64_t>* slots) const {
-  if (slots != nullptr) munmap(slots, bytes);
-}
-
-// Allocates zeroed memory from the system, in large pages if there are any.
-void Visited::allocate(std::size_t slots) {
-  const std::size_t bytes = slots * sizeof(std::uint64_t);
-  void* const memory =
-      mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-  if (memory == MAP_FAILED) throw std::bad_alloc();
-  madvise(memory, bytes, MADV_HUGEPAGE);
-  slots_ = {static_cast<std::atomic<std::uint64_t>*>(memory), Release{bytes}};
-  mask_ = slots - 1;
-}
-
-std::size_t Visited::room() const {
-  const std::size_t most = (mask_ + 1) / 100 * kFullPercent;
-  return most > size_ ? most - size_ : 0;
-}
-
-void Visited::reserve(std::size_t more) {
-  while (room() < more) {
-    const auto old = std::move(slots_);
-    const std::size_t old_slots = mask_ + 1;
-    allocate(2 * old_slots);
-    for (std::size_t i = 0; i < old_slots; ++i) {
-      const std::uint64_t fingerprint = old[i].load(std::memory_order_relaxed);
-      if (fingerprint != 0) insert(fingerprint);
-    }
-  }
-}
-
-// Returns the memory that the process has in use, 0 if the system does not say.
-std::size_t process_bytes() {
-  std::ifstream statm("/proc/self/statm");
-  std::size_t size = 0;
-  std::size_t resident = 0;
-  if (!(statm >> size >> resident)) return 0;
-  return resident * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
-}
 
 // Returns what a vector's next growth needs beside what it has; 0 while that is far.
 template <class T>
@@ -171,6 +29,7 @@ std::size_t growth_bytes(const std::vector<T>& growing) {
 
 using Clock = std::chrono::steady_clock;
 
+constexpr const char* kNoMemory = "more memory than the system has";
 constexpr std::size_t kLookahead = 16;    // States whose successors are looked up together.
 constexpr std::size_t kWaysOnMax = 256;   // For one state; room is kept for so many.
 constexpr std::size_t kBatchMin = 16384;  // States between two looks at the room.
@@ -184,13 +43,21 @@ struct Find {
 /// A thread's share of the search.
 class Worker {
  public:
-  Worker(Nodes& nodes, Visited& visited, std::uint8_t number)
-      : network(nodes), visited_(visited), number_(number) {}
+  Worker(Nodes& nodes, Sites& sites, Visited& visited, bool by_mote, std::uint8_t number)
+      : network(nodes),
+        packer(nodes, sites, network),
+        nodes_(nodes),
+        orbit_(sites.symmetry.group().size()),
+        visited_(visited),
+        by_mote_(by_mote),
+        number_(number) {}
 
   void start(const World& world) {
-    visited_.insert(network.fingerprint(world));
+    const Packed packed = packer.pack(world);
+    visited_.insert(packer.key(packed).bits);
     visited_.add_to_size(1);
-    add(world, {});
+    represented = 1;  // All motes are alike, and all sinks.
+    add(packed, {});
   }
 
   /// Takes chunks until none is left.
@@ -198,20 +65,34 @@ class Worker {
     for (std::size_t i = taken++; i < chunks.size(); i = taken++) expand(chunks[i]);
   }
 
+  /// Leaves, where the motes' steps are independent, those of one mote (independence.h).
+  void reduce(const World& world, Successors& ways_on) const {
+    if (by_mote_) keep_one_mote(nodes_, world, ways_on);
+  }
+
   Network network;
+  Packer packer;
   Frontier next;
   std::vector<PathLink> links;  ///< For every state that this thread found, in order.
   std::vector<Find> violations;
   std::vector<Find> weaknesses;
   std::uint64_t transitions = 0;
+  std::uint64_t represented = 0;  ///< States of the orbits of those that it found.
+  std::uint64_t hashed = 0;       ///< Of the found ones, those that are known by a hash.
   std::size_t inserted = 0;
+  bool ended = false;  ///< It saw a state without a way on.
   Mask goals = 0;
 
  private:
   struct Pending {
+    struct Key {
+      Packed packed;
+      StateKey key;
+      std::size_t same = 1;  ///< Permutations that leave it as it is.
+    };
     PathLink self;
     Successors ways_on;
-    std::vector<std::uint64_t> fingerprints;
+    std::vector<Key> keys;
   };
 
   void expand(const Chunk& chunk) {
@@ -220,7 +101,7 @@ class Worker {
     for (std::size_t left = chunk.states; left != 0;) {
       const std::size_t group = std::min(left, kLookahead);
       for (std::size_t i = 0; i < group; ++i) {
-        bytes += network.unpack(bytes, world_);
+        bytes += Frontier::read(bytes, nodes_.count(), packed_);
         look(pending_[i], {index++, chunk.thread, 0});
       }
       for (std::size_t i = 0; i < group; ++i) take(pending_[i]);
@@ -231,43 +112,75 @@ class Worker {
   // Computes the successors, and prefetches their places in the visited set.
   void look(Pending& pending, PathLink self) {
     pending.self = self;
+    packer.unpack(packed_, world_);
     network.successors(world_, pending.ways_on);
-    pending.fingerprints.clear();
+    judge(pending);
+    reduce(world_, pending.ways_on);
+    pending.keys.clear();
     for (const Successor& s : pending.ways_on) {
-      pending.fingerprints.push_back(network.fingerprint(s.world));
-      visited_.prefetch(pending.fingerprints.back());
+      Packed packed = packer.pack(s.world);
+      const std::size_t same = packer.sort(packed);
+      pending.keys.push_back({packed, packer.key(packed), same});
+      visited_.prefetch(pending.keys.back().key.bits);
     }
+  }
+
+  void judge(const Pending& pending) {
+    ended |= pending.ways_on.size() == 0;
     const std::uint64_t weak = network.known_weak();
-    const Mask violated = network.violated(world_, pending.ways_on);
-    if (violated != 0) violations.push_back({self, violated});
-    if (network.known_weak() != weak && weaknesses.empty()) weaknesses.push_back({self, 0});
+    Mask violated = network.violated(world_, pending.ways_on);
+    if (orbit_ > 1 && network.rests(world_, pending.ways_on)) violated |= judge_orbit();
+    if (violated != 0) violations.push_back({pending.self, violated});
+    if (network.known_weak() != weak && weaknesses.empty()) weaknesses.push_back({pending.self, 0});
     goals |= network.goals(world_);
+  }
+
+  // What happens when faults stop depends on the order of motes and sinks.
+  Mask judge_orbit() {
+    Mask violated = 0;
+    std::vector<Packed> seen{packed_};
+    World other;
+    for (std::size_t g = 1; g < orbit_; ++g) {
+      const Packed packed = packer.exchanged(packed_, g);
+      if (std::find(seen.begin(), seen.end(), packed) != seen.end()) continue;
+      seen.push_back(packed);
+      packer.unpack(packed, other);
+      violated |= network.broken_by_healing(other);
+    }
+    return violated;
   }
 
   void take(const Pending& pending) {
     transitions += pending.ways_on.size();
     for (std::size_t i = 0; i < pending.ways_on.size(); ++i) {
       const Successor& s = pending.ways_on[i];
+      const auto& [packed, key, same] = pending.keys[i];
       goals |= s.goals;
-      const bool is_new = visited_.insert(pending.fingerprints[i]);
+      const bool is_new = visited_.insert(key.bits);
       if (!is_new && s.violated == 0) continue;
       const PathLink link{pending.self.index, pending.self.thread, static_cast<std::uint16_t>(i)};
       if (is_new) {
         ++inserted;
-        add(s.world, link);
+        represented += orbit_ / same;
+        hashed += key.exact ? 0 : 1;
+        add(packed, link);
       }
       // A step that breaks something counts even where it leads to a known state.
       if (s.violated != 0) step_violations.push_back({link, s.violated});
     }
   }
 
-  void add(const World& world, PathLink link) {
-    next.add(network, world, static_cast<std::uint32_t>(links.size()), number_);
+  void add(const Packed& packed, PathLink link) {
+    next.add(packed, nodes_.count(), static_cast<std::uint32_t>(links.size()), number_);
     links.push_back(link);
   }
 
+  Nodes& nodes_;
+  std::size_t orbit_;
   Visited& visited_;
+  bool by_mote_;
   std::uint8_t number_;
+  Packed packed_;
   World world_;
   std::array<Pending, kLookahead> pending_;
 
@@ -278,9 +191,11 @@ class Worker {
 class Search {
  public:
   Search(Nodes& nodes, const std::function<void(const Progress&)>& report)
-      : nodes_(nodes), report_(report), start_(Clock::now()) {
+      : nodes_(nodes), report_(report), start_(Clock::now()), sites_(nodes) {
+    by_mote_ = motes_are_independent(nodes.options());
     for (unsigned i = 0; i < nodes.options().threads; ++i) {
-      workers_.push_back(std::make_unique<Worker>(nodes, visited_, static_cast<std::uint8_t>(i)));
+      workers_.push_back(std::make_unique<Worker>(nodes, sites_, visited_, by_mote_,
+                                                  static_cast<std::uint8_t>(i)));
     }
   }
 
@@ -291,6 +206,7 @@ class Search {
     } catch (const std::bad_alloc&) {
       limit_ = kNoMemory;
     }
+    if (!found_violation()) check_reductions();
     return finish();
   }
 
@@ -375,7 +291,8 @@ class Search {
     if (out_of_memory_) limit_ = kNoMemory;
     const std::uint64_t most = nodes_.options().states_max;
     if (most != 0 && visited_.size() >= most) limit_ = "as many states as --max-states allows";
-    if (nodes_.full()) limit_ = "more node states or frames than there are numbers for";
+    if (nodes_.full() || sites_.full())
+      limit_ = "more node states or frames than there are numbers for";
     for (const auto& worker : workers_) {
       if (worker->network.overflowed()) limit_ = "more frames in flight than there is room for";
       if (worker->links.size() > std::numeric_limits<std::uint32_t>::max() / 2) {
@@ -383,6 +300,24 @@ class Search {
       }
     }
     return *limit_ == '\0';
+  }
+
+  // What was left out is the like of what was searched only if these hold. A violation is one
+  // without them.
+  void check_reductions() {
+    bool alike = false;
+    try {
+      alike = sites_.symmetry.holds();
+    } catch (const std::bad_alloc&) {
+      limit_ = kNoMemory;
+    }
+    if (!alike) depth_ = 0;  // Then nothing was proved.
+    if (!alike && limit_ != kNoMemory)
+      limit_ = "motes or sinks that are not treated alike; give --no-symmetry";
+    const bool ended = std::any_of(workers_.begin(), workers_.end(),
+                                   [](const auto& worker) { return worker->ended; });
+    if (by_mote_ && !ended && *limit_ == '\0')
+      limit_ = "motes whose steps never end; give --no-partial-order";
   }
 
   bool found_violation() const {
@@ -410,15 +345,31 @@ class Search {
          link = workers_[link.thread]->links[link.index]) {
       ways.push_back(link.way);
     }
+    // Of each state of the search the path has one of its orbit: the way on that leads to the orbit
+    // of the next.
     Path path;
     path.violated = violated;
-    Network& network = workers_[0]->network;
-    World world = network.initial();
+    Worker& worker = *workers_[0];
+    World world = worker.network.initial();
+    Packed kept = worker.packer.pack(world);
+    World kept_world;
     Successors ways_on;
     for (auto way = ways.rbegin(); way != ways.rend(); ++way) {
-      network.successors(world, ways_on);
-      path.moves.push_back(ways_on[*way].move);
-      world = ways_on[*way].world;
+      worker.packer.unpack(kept, kept_world);
+      worker.network.successors(kept_world, ways_on);
+      worker.reduce(kept_world, ways_on);
+      const Successor step = ways_on[*way];
+      kept = worker.packer.pack(step.world);
+      worker.packer.sort(kept);
+      worker.network.successors(world, ways_on);
+      const auto like = std::find_if(ways_on.begin(), ways_on.end(), [&](const Successor& s) {
+        Packed packed = worker.packer.pack(s.world);
+        worker.packer.sort(packed);
+        return packed == kept && s.violated == step.violated;
+      });
+      if (like == ways_on.end()) break;  // Not if the symmetry holds.
+      path.moves.push_back(like->move);
+      world = like->world;
     }
     return path;
   }
@@ -449,21 +400,31 @@ class Search {
     result.violation = shortest_violation();
     result.limit = result.violation ? "" : limit_;
     result.complete = !result.violation && *limit_ == '\0';
+    double hashed = 0;
     for (const auto& worker : workers_) {
       result.goals |= worker->goals;
       result.known_weak_states += worker->network.known_weak();
+      result.represented_states += worker->represented;
+      hashed += static_cast<double>(worker->hashed);
     }
     for (const auto& worker : workers_) {
       if (worker->weaknesses.empty() || result.known_weakness) continue;
       const Find& f = worker->weaknesses.front();
       result.known_weakness = path_to(workers_[f.link.thread]->links[f.link.index], 0);
     }
+    const Mask either = bit(Goal::kJoinedFirst) | bit(Goal::kJoinedSecond);
+    const bool sinks_alike = nodes_.options().symmetry && nodes_.options().sinks > 1;
+    if (sinks_alike && (result.goals & either) != 0) result.goals |= either;
+    result.by_mote = by_mote_;
+    result.omission_probability =
+        hashed * static_cast<double>(visited_.size()) / 18446744073709551616.0;
     result.step_acted = nodes_.step_acted();
     result.node_states = nodes_.states();
     result.frames = nodes_.frames();
     std::size_t links = 0;
     for (const auto& worker : workers_) links += worker->links.capacity() * sizeof(PathLink);
-    result.memory_bytes = visited_.memory_bytes() + links + nodes_.memory_bytes();
+    result.memory_bytes =
+        visited_.memory_bytes() + links + nodes_.memory_bytes() + sites_.memory_bytes();
     result.memory_per_state_bytes =
         (visited_.memory_bytes() + links) / std::max<std::size_t>(visited_.size(), 1);
     return result;
@@ -472,6 +433,8 @@ class Search {
   Nodes& nodes_;
   const std::function<void(const Progress&)>& report_;
   Clock::time_point start_;
+  Sites sites_;
+  bool by_mote_ = false;  ///< The motes' steps are independent, and taken mote by mote.
   Visited visited_;
   std::vector<std::unique_ptr<Worker>> workers_;
   std::uint32_t depth_ = 0;
@@ -510,8 +473,15 @@ Mask expected_goals(const Options& o) {
 }
 
 Result explore(Nodes& nodes, const std::function<void(const Progress&)>& report) {
-  Search search(nodes, report);
-  return search.run();
+  Result result = Search(nodes, report).run();
+  if (!nodes.options().liveness || !result.complete) return result;
+  Liveness liveness = look_for_loops(nodes);
+  result.liveness_states = liveness.states;
+  result.liveness_parts = liveness.parts;
+  result.violation = std::move(liveness.violation);
+  result.limit = liveness.limit;
+  result.complete = !result.violation && *liveness.limit == '\0';
+  return result;
 }
 
 }  // namespace rubric::explore

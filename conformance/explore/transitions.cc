@@ -10,6 +10,7 @@
 
 #include "conformance/explore/network.h"
 #include "conformance/explore/parts.h"
+#include "conformance/explore/sites.h"
 #include "conformance/trace/events/lines.h"
 #include "conformance/trace/print.h"
 
@@ -161,7 +162,12 @@ class Found {
 class Tour {
  public:
   Tour(const PartInfo& part, const Options& options, Found& found)
-      : part_(part), nodes_(std::make_unique<Nodes>(options)), network_(*nodes_), found_(found) {}
+      : part_(part),
+        nodes_(std::make_unique<Nodes>(options)),
+        network_(*nodes_),
+        sites_(*nodes_),
+        packer_(*nodes_, sites_, network_),
+        found_(found) {}
 
   /// Visits the states of the network. Returns false if there are too many.
   bool run(std::uint64_t& worlds) {
@@ -188,7 +194,8 @@ class Tour {
   };
 
   void visit(const World& world, std::uint32_t parent, const Move& move) {
-    if (seen_.insert(network_.fingerprint(world)).second) all_.push_back({world, parent, move});
+    if (seen_.insert(packer_.key(packer_.pack(world)).bits).second)
+      all_.push_back({world, parent, move});
   }
 
   Given given(const NodeState& before, std::uint32_t what) const {
@@ -240,6 +247,8 @@ class Tour {
   const PartInfo& part_;
   std::unique_ptr<Nodes> nodes_;
   Network network_;
+  Sites sites_;
+  Packer packer_;
   Found& found_;
   std::vector<Entry> all_;
   std::unordered_set<std::uint64_t> seen_;

@@ -47,6 +47,8 @@ struct ExploreOptions {
   std::vector<std::string> properties;
   TransitionOptions transitions;
   bool reboot = false;
+  bool no_symmetry = false;
+  bool no_partial_order = false;
   unsigned requests = 0;  // 0: as the profile says.
   unsigned acks = 0;
 };
@@ -61,10 +63,15 @@ std::string explore_footer() {
     text += fmt::format("  {:<19} {}\n", flaw.name, flaw.description);
   }
   return text +
+         "Of states that differ in who is which mote or sink one is kept, and where motes' steps "
+         "are\n"
+         "independent one mote's come before the next one's. Both are checked, and keep verdicts\n"
+         "and the lengths of traces; \"stand for\" counts the states without the first.\n"
          "Time is abstract: a timer that is set may fire at any moment. Where nothing is broken,\n"
          "the run also fails if something that must be possible was never reached.\n"
          "Examples:\n"
          "  rubric explore --sinks 2 --loss --dup\n"
+         "  rubric explore --motes 3 --sinks 2 --loss --dup --no-partial-order\n"
          "  rubric explore --calls 2 --loss --flaw accepts_wrong_seq --out broken.rtr\n"
          "  rubric explore --transitions --part join --format dot | dot -Tsvg -o join.svg\n"
          "Exit codes: 0 all properties hold, 1 one is broken or something was never reached,\n"
@@ -97,6 +104,8 @@ const flaws::Flaw* chosen_flaw(const ExploreOptions& options) {
 // Returns the meaning of the options' words.
 explore::Options resolve(const ExploreOptions& options) {
   explore::Options network = options.network;
+  network.symmetry = !options.no_symmetry;
+  network.partial_order = !options.no_partial_order;
   network.memory_max_bytes = cli::parse_quantity(options.memory).value_or(cli::Quantity{}).bytes;
   network.profile = chosen_profile(options);
   if (options.requests != 0) {
@@ -183,12 +192,6 @@ Verdict judge(const ExploreOptions& options, const explore::Options& network,
   return {"holds", cli::kExitClean, 0, {}};
 }
 
-// Returns a bound for the probability that two states share a fingerprint, so that one is left out.
-double omission_probability(std::uint64_t states) {
-  const auto n = static_cast<double>(states);
-  return n * n / 2 / 18446744073709551616.0;
-}
-
 std::string first_broken(const Result& result) {
   return property_names(result.violation->violated).front();
 }
@@ -196,9 +199,16 @@ std::string first_broken(const Result& result) {
 std::string text_of(const Result& result, const Verdict& verdict) {
   const Progress& p = result.progress;
   const double seconds = std::max(p.seconds, 1e-9);
-  std::string out = fmt::format("states       {}\ntransitions  {}\ndepth        {}\n", p.states,
-                                p.transitions, p.depth);
+  std::string out;
   const auto to = std::back_inserter(out);
+  fmt::format_to(to, "states       {}\n", p.states);
+  if (result.by_mote) {
+    out += "by           one mote after the other, as their steps are independent\n";
+  } else if (result.represented_states != p.states) {
+    fmt::format_to(to, "stand for    {} states, motes and sinks exchanged\n",
+                   result.represented_states);
+  }
+  fmt::format_to(to, "transitions  {}\ndepth        {}\n", p.transitions, p.depth);
   fmt::format_to(to,
                  "time         {:.2f} s: {:.2f} million states/s, {:.2f} million transitions/s\n",
                  p.seconds, static_cast<double>(p.states) / seconds / 1e6,
@@ -208,8 +218,16 @@ std::string text_of(const Result& result, const Verdict& verdict) {
                  "{} frames\n",
                  static_cast<double>(result.memory_bytes) / 1e6, result.memory_per_state_bytes,
                  result.node_states, result.frames);
-  fmt::format_to(to, "left out     a state at most with probability {:.1e}\n",
-                 omission_probability(p.states));
+  if (result.omission_probability == 0) {
+    out += "left out     none: each state is known by a number of its own\n";
+  } else {
+    fmt::format_to(to, "left out     a state at most with probability {:.1e}\n",
+                   result.omission_probability);
+  }
+  if (result.liveness_states != 0) {
+    fmt::format_to(to, "liveness     {} states, {} parts in which something may wait for ever\n",
+                   result.liveness_states, result.liveness_parts);
+  }
   fmt::format_to(to, "reached      {}\n", fmt::join(goal_names(result.goals), ", "));
   if (result.known_weak_states != 0) {
     fmt::format_to(to,
@@ -225,6 +243,11 @@ std::string text_of(const Result& result, const Verdict& verdict) {
     const Mask broken = result.violation ? result.violation->violated : 0;
     if ((broken & explore::bit(property.property)) == 0) continue;
     fmt::format_to(to, "broken       {}: {}\n", property.name, property.sentence);
+  }
+  if (result.violation && result.violation->loop) {
+    const std::size_t loop = *result.violation->loop;
+    fmt::format_to(to, "for ever     after {} moves, by a loop of {} moves that is fair\n", loop,
+                   result.violation->moves.size() - loop);
   }
   if (!result.complete && !result.violation) {
     fmt::format_to(to, "proved       no property is broken in fewer than {} moves\n", p.depth);
@@ -247,6 +270,8 @@ std::string json_of(const ExploreOptions& options, const Result& result, const V
        {"reached", Json::array(goal_names(result.goals))},
        {"never", Json::array(goal_names(verdict.never))},
        {"states", p.states},
+       {"represented_states", result.represented_states},
+       {"by_mote", result.by_mote},
        {"transitions", p.transitions},
        {"depth", p.depth},
        {"seconds", Json::raw(fmt::format("{:.3f}", p.seconds))},
@@ -255,7 +280,9 @@ std::string json_of(const ExploreOptions& options, const Result& result, const V
        {"node_states", result.node_states},
        {"frames", result.frames},
        {"known_weak_states", result.known_weak_states},
-       {"omission_probability", Json::raw(fmt::format("{:e}", omission_probability(p.states)))},
+       {"omission_probability", Json::raw(fmt::format("{:e}", result.omission_probability))},
+       {"liveness_states", result.liveness_states},
+       {"liveness_parts", result.liveness_parts},
        {"trace", Json::or_null(trace)}},
       "\n ");
   return out.text() + '\n';
@@ -376,7 +403,14 @@ void add_bounds(cli::Command& sub, ExploreOptions& options) {
   sub.add_option("--memory", options.memory,
                  "Stop, inconclusive, before the process takes more than this (k, M, G)")
       .check(size, "SIZE");
-  sub.add_flag("--exact", n.exact, "Do not merge states that differ in nothing that matters");
+  sub.add_flag("--exact", n.exact, "Keep apart states that differ in nothing that matters");
+  sub.add_flag("--no-symmetry", options.no_symmetry,
+               "Keep apart states that differ in who is which mote and which sink");
+  sub.add_flag("--no-partial-order", options.no_partial_order,
+               "Take the steps of all motes in every order, even where they are independent");
+  sub.add_flag("--liveness", n.liveness,
+               "Then look for calls and reliable messages that never end though timers fire and "
+               "frames that are sent again and again are heard");
   n.threads = std::max(1U, std::thread::hardware_concurrency());
   sub.add_option("--threads", n.threads, "Run this many threads").between(1, 64).show_default();
 }

@@ -38,6 +38,28 @@ class Explore(unittest.TestCase):
             self.assertIn(line, done.stdout)
         self.assertEqual(done.stderr, "")  # No progress where stderr is no terminal.
 
+    def test_reductions_can_be_switched_off(self):
+        found = {}
+        for words in [], ["--no-partial-order"], ["--no-partial-order", "--no-symmetry"]:
+            done = explore("--motes", "2", *FAULTS, *words, "--format", "json")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            found[len(words)] = json.loads(done.stdout)
+        by_mote, orbits, plain = found[0], found[1], found[2]
+        self.assertEqual([f["by_mote"] for f in (by_mote, orbits, plain)], [True, False, False])
+        self.assertLess(by_mote["states"], orbits["states"])
+        self.assertLess(orbits["states"], plain["states"])
+        self.assertEqual(orbits["represented_states"], plain["states"])
+        self.assertEqual(by_mote["reached"], plain["reached"])
+        self.assertEqual(plain["omission_probability"], 0)
+        text = explore("--motes", "2", *FAULTS, "--no-partial-order").stdout
+        self.assertIn(f"stand for    {plain['states']} states", text)
+        self.assertIn("one mote after the other", explore("--motes", "2", *FAULTS).stdout)
+
+    def test_liveness(self):
+        done = explore(*FAULTS, "--liveness")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(done.stdout, r"liveness +101 states, [1-9]\d* parts")
+
     def test_a_flaw_is_found(self):
         """explorer_test finds each of them."""
         words = ["--calls", "2", *FAULTS, "--format", "json"]
@@ -117,7 +139,7 @@ class Explore(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stdout)
 
     def test_a_limit_is_inconclusive(self):
-        done = explore("--motes", "2", *FAULTS, "--max-states", "500")
+        done = explore("--motes", "2", *FAULTS, "--max-states", "300")
         self.assertEqual(done.returncode, 3)
         self.assertIn("verdict      inconclusive: as many states", done.stdout)
         depth = re.search(r"^depth +(\d+)$", done.stdout, re.M)[1]
@@ -125,7 +147,8 @@ class Explore(unittest.TestCase):
                       done.stdout)
 
     def test_memory_is_a_limit(self):
-        network = ["--motes", "3", "--sinks", "2", *FAULTS, "--threads", "2"]
+        network = ["--motes", "3", "--sinks", "2", *FAULTS, "--threads", "2", "--no-symmetry",
+                   "--no-partial-order"]
         process = subprocess.Popen([RUBRIC, "explore", *network, "--memory", "60M"],
                                    stdout=subprocess.PIPE, text=True)
         out = process.stdout.read()

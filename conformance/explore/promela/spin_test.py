@@ -3,9 +3,13 @@
 each, property by property, the two must agree.
 
 Usage: spin_test.py RUBRIC [PROPERTY...]. Needs Debian's spin and gcc. Prints the table: `.` holds
-for both, the network's sizes where both find it broken; a disagreement names who says what.
+for both, the network's sizes where both find it broken; a disagreement names who says what. Before
+it, what both took for the networks without a flaw.
+
+Usage: spin_test.py RUBRIC --figures: that alone.
 """
 
+import json
 import pathlib
 import re
 import subprocess
@@ -50,6 +54,16 @@ class Pan:
         return subprocess.run(words, cwd=self.folder, check=True, timeout=SECONDS_MAX, text=True,
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT).stdout
 
+    def figures(self):
+        """States, transitions and bytes a state of the whole search for a claim that holds."""
+        out = self.run(["./pan", "-m100000", "-w18", "-N", "requests_bounded"])
+        if "errors: 0" not in out:
+            sys.exit(f"spin's answer makes no sense:\n{out}")
+        states = int(re.search(r"(\d+) states, stored", out)[1])
+        steps = int(re.search(r"(\d+) transitions", out)[1])
+        megabytes = float(re.search(r"([\d.]+)\s+equivalent memory usage for states", out)[1])
+        return states, steps, round(megabytes * 2**20 / states)
+
     def breaks(self, claim):
         """Returns whether some run breaks the claim. Fails unless the search was complete."""
         out = self.run(["./pan", "-a", "-m100000", "-w18", "-N", claim])
@@ -63,15 +77,38 @@ class Pan:
         sys.exit(f"spin's answer for {claim} makes no sense:\n{out}")
 
 
-def explorer_breaks(rubric, network, flaw, claim):
+def run_explorer(rubric, network, *more):
     motes, sinks, calls, reorder, dup = network
     words = [rubric, "explore", "--motes", motes, "--sinks", sinks, "--calls", calls, "--requests",
-             REQUESTS, "--acks", ACKS, "--loss", "--property", claim, "--format", "json"]
-    words += ["--flaw", flaw] if flaw else []
+             REQUESTS, "--acks", ACKS, "--loss", "--format", "json", *more]
     words += ["--reorder"] if reorder else []
     words += ["--dup"] if dup else []
-    done = subprocess.run([str(w) for w in words], timeout=SECONDS_MAX, text=True,
-                          stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    words = [str(word) for word in words]
+    return words, subprocess.run(words, timeout=SECONDS_MAX, text=True, stdout=subprocess.PIPE,
+                                 stderr=subprocess.PIPE)
+
+
+def print_figures(rubric):
+    """Both on the same networks: spin's own states, the explorer's without and with reductions."""
+    print(f"{'motes x sinks':<16}{'by':<24}{'states':>9}{'transitions':>13}{'bytes/state':>13}"
+          f"{'omission':>10}")
+    for network in NETWORKS:
+        size = f"{network[0]} x {network[1]}" + (", reorder" if network[3] else "")
+        with tempfile.TemporaryDirectory() as folder:
+            rows = [("spin", *Pan(folder, network, None).figures(), 0)]
+        for name, words in [("rubric, no reduction", ["--no-symmetry", "--no-partial-order"]),
+                            ("rubric", [])]:
+            found = json.loads(run_explorer(rubric, network, *words)[1].stdout)
+            rows.append((name, found["states"], found["transitions"],
+                         found["memory_per_state_bytes"], found["omission_probability"]))
+        for name, states, steps, size_bytes, omission in rows:
+            print(f"{size:<16}{name:<24}{states:>9}{steps:>13}{size_bytes:>13}{omission:>10.0e}")
+            size = ""
+
+
+def explorer_breaks(rubric, network, flaw, claim):
+    flawed = ["--flaw", flaw] if flaw else []
+    words, done = run_explorer(rubric, network, "--property", claim, *flawed)
     verdict = re.search(r'"verdict": ?"(\w+)"|$', done.stdout)[1]
     if verdict == "broken" and done.returncode == 1:
         return True
@@ -109,11 +146,14 @@ def compare(rubric, flaw, claims):
 
 def main():
     rubric = str(pathlib.Path(sys.argv[1]).resolve())
+    if sys.argv[2:] == ["--figures"]:
+        return print_figures(rubric)
     claims = sys.argv[2:] or PROPERTIES
     assert len(PROPERTIES) == readme_number("explorer on # properties")
     assert len(FLAWS) - 1 == readme_number("properties, # flaws")
     assert len(NETWORKS) == readme_number("flaws and # networks")
     wrong = 0
+    print_figures(rubric)
     print(f"{'broken in':<20}" + "".join(f"{flaw or 'no flaw':<20}" for flaw in FLAWS))
     columns = []
     for flaw in FLAWS:

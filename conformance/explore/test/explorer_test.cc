@@ -52,10 +52,12 @@ void expect_holds(const Options& options, const Result& result) {
   EXPECT_EQ(goal_names(expected_goals(options) & ~result.goals), "") << "never reached";
 }
 
+// Without reductions, which reductions_test.cc is about.
 std::unique_ptr<Result> same_with_threads(std::uint8_t motes, std::uint8_t sinks) {
   auto alone = std::make_unique<Result>();
   for (const unsigned threads : {1U, 2U, 3U}) {
     Options options = network(motes, sinks);
+    options.symmetry = options.partial_order = false;
     options.threads = threads;
     const Result result = run(options);
     expect_holds(options, result);
@@ -77,10 +79,9 @@ TEST(Explore, CountsDoNotDependOnThreads) {
   const auto two_sinks = same_with_threads(1, 2);
   EXPECT_GT(two_sinks->progress.states, 2 * small->progress.states);
   EXPECT_GT(two_sinks->progress.depth, small->progress.depth);
-  // Two motes ignore each other's frames, so nearly every pair of states of one alone occurs.
+  // Two motes ignore each other's frames, so every pair of states of one alone occurs.
   const auto two_motes = same_with_threads(2, 1);
-  EXPECT_GT(two_motes->progress.states, small->progress.states * small->progress.states / 2);
-  EXPECT_EQ(two_motes->progress.depth, 2 * small->progress.depth);
+  EXPECT_EQ(two_motes->progress.states, small->progress.states * small->progress.states);
 }
 
 // States that differ only in their past may be merged: verdict and goals are the same with and
@@ -160,7 +161,7 @@ TEST(Explore, DeployedProfileHoldsByItsOwnRules) {
 
 TEST(Explore, StopsAtItsLimit) {
   Options options = network(2, 1);
-  options.states_max = 1000;
+  options.states_max = 300;
   const Result result = run(options);
   EXPECT_FALSE(result.complete);
   EXPECT_STRNE(result.limit, "");
