@@ -161,7 +161,7 @@ OtherSpecs::OtherSpecs(const reflect::Protocol& chosen) : chosen_(chosen) {
 void OtherSpecs::look_closer(const reflect::Frame& frame) {
   std::vector<Hint> hints;
   look_closer(frame, hints);
-  for (const Hint& hint : hints) report::print(stderr, "{}", hint.text);
+  for (const Hint& hint : hints) text::print(stderr, "{}", hint.text);
 }
 
 void OtherSpecs::look_closer(const reflect::Frame& frame, std::vector<Hint>& hints) {
