@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "codec/containers/link_record.h"
+#include "codec/containers/radio_line.h"
 #include "codec/runtime/hdlc.h"
 
 namespace rubric {
@@ -30,6 +31,8 @@ std::uint16_t link_type_of(const ReaderOptions& options) {
 }
 
 }  // namespace
+
+bool is_hex_digit(std::uint8_t c) { return hex_digit(c) != kNoDigit; }
 
 bool begins_serial_frame(Bytes bytes) {
   if (bytes[0] != kHdlcFlag) return false;
@@ -67,12 +70,19 @@ Error decode_hex_line(Bytes text, std::vector<std::uint8_t>& bytes) {
 }
 
 bool is_noise(Bytes line) {
-  const auto* begin = std::find_if_not(line.begin(), line.end(), is_space);
-  const auto* const end = std::find_if(begin, line.end(), is_space);
-  if (begin == end || hex_digit(*begin) == kNoDigit) return true;
-  if (end - begin > 2 && *begin == '0' && (begin[1] | 0x20) == 'x') begin += 2;
-  const auto is_digit = [](std::uint8_t c) { return hex_digit(c) != kNoDigit; };
-  return end - begin > 2 && !std::all_of(begin, end, is_digit);
+  const auto is_other = [](std::uint8_t c) { return !is_hex_digit(c); };
+  bool first = true;
+  for (const std::uint8_t* at = line.begin();;) {
+    const auto* begin = std::find_if_not(at, line.end(), is_space);
+    const auto* const end = std::find_if(begin, line.end(), is_space);
+    if (begin == end || (!first && *begin == '#')) return first;
+    if (first && is_other(*begin)) return true;
+    if (end - begin > 2 && *begin == '0' && (begin[1] | 0x20) == 'x') begin += 2;
+    const auto others = std::count_if(begin, end, is_other);
+    if (others > 1 || (first && end - begin > 2 && others != 0)) return true;
+    first = false;
+    at = end;
+  }
 }
 
 HexReader::HexReader(const ReaderOptions& options, bool is_log)
@@ -135,6 +145,10 @@ void HexReader::serial_bytes(Bytes bytes, PacketSink sink) {
   in_frame_ = bytes[bytes.size() - 1] != kHdlcFlag;
 }
 
+void HexReader::pass_over() {
+  if (noise_.lines++ == 0) noise_.first = line_number_;
+}
+
 void HexReader::line(Bytes text, PacketSink sink) {
   ++line_number_;
   Packet packet;
@@ -142,12 +156,17 @@ void HexReader::line(Bytes text, PacketSink sink) {
   packet.framing = options_.hex_framing;
   packet.direction = options_.direction;
   packet.offset_bytes = line_offset_;
+  const bool frames = is_log_ && options_.hex_framing != Framing::kBare && dropped_ == 0;
+  if (RadioLine stated; frames && read_radio_line(text, stated, bytes_)) {
+    const Bytes bytes(bytes_.data(), bytes_.size());
+    decode_record(bytes, bytes.size(), stated.link_type, "WIRE-HEX"_rule, packet);
+    packet.time_ns = stated.time_ns;
+    packet.radio = stated.radio;
+    return sink(packet);
+  }
   packet.error = decode_hex_line(text, bytes_);
   if (dropped_ != 0) packet.error = fail(Fault::kTooLong, text.size(), "WIRE-HEX"_rule).error;
-  if (is_log_ && packet.error.fault == Fault::kUnexpected && is_noise(text)) {
-    if (noise_.lines++ == 0) noise_.first = line_number_;
-    return;
-  }
+  if (is_log_ && packet.error.fault == Fault::kUnexpected && is_noise(text)) return pass_over();
   if (packet.error.fault != Fault::kNone) {
     packet.framing = Framing::kBare;
     packet.bytes = text;
@@ -157,6 +176,9 @@ void HexReader::line(Bytes text, PacketSink sink) {
   if (bytes_.empty()) return;
   const Bytes bytes(bytes_.data(), bytes_.size());
   if (is_serial_bytes(bytes)) return serial_bytes(bytes, sink);
+  if (is_log_ && options_.hex_framing == Framing::kSf && bytes.size() < kPacketLineBytes) {
+    return pass_over();
+  }
   if (options_.hex_framing == Framing::kBare) {
     packet.bytes = bytes;
   } else {

@@ -18,7 +18,8 @@ inline constexpr std::size_t kHexLineMax = 64 * 1024;
 /// that begins_serial_frame() has the bytes of a serial line, flags and escapes included; a frame
 /// goes on in the next lines until its closing flag.
 ///
-/// In a log the lines that is_noise() knows are passed over and counted.
+/// In a log the lines that is_noise() knows, and those with fewer bytes than a packet's header, are
+/// passed over and counted; those of read_radio_line() are radio frames.
 ///
 /// Faults: kUnexpected (a line that is no hex text: the line itself is delivered, the offset counts
 /// its characters), kTooLong (a line beyond kHexLineMax), kCut never: the last line needs no end;
@@ -37,6 +38,7 @@ class HexReader final : public Reader {
   void serial_bytes(Bytes bytes, PacketSink sink);
   void hold(Bytes text);
   void line(Bytes text, PacketSink sink);
+  void pass_over();
   void deliver_held(PacketSink sink);
 
   ReaderOptions options_;
@@ -51,14 +53,21 @@ class HexReader final : public Reader {
   std::vector<std::uint8_t> bytes_;  // The present line, decoded.
 };
 
+/// The bytes of a serial packet's header; a shorter line of hex digits in a log may be a word or a
+/// number.
+inline constexpr std::size_t kPacketLineBytes = 8;
+
 /// Returns whether a line that is no hex text is of another kind altogether, such as a program's
-/// greeting, rather than hex text with a mistake: whether its first word is no hex digits.
+/// greeting, rather than hex text with a mistake: whether its first word is no hex digits, or a
+/// word has two characters that are none.
 bool is_noise(Bytes line);
 
 /// Returns whether a line of these bytes, one at least, is taken for those of a serial line: a
 /// flag, and a second flag or a packet kind of TEP 113 if more follows. A packet may begin with 7E,
 /// too.
 bool begins_serial_frame(Bytes bytes);
+
+bool is_hex_digit(std::uint8_t c);
 
 /// Decodes one line into `bytes`, which is cleared first. The error's offset counts characters.
 Error decode_hex_line(Bytes text, std::vector<std::uint8_t>& bytes);

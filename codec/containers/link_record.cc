@@ -137,12 +137,6 @@ bool take_phy_header(Bytes& record, bool cut, ReqId container, Packet& packet) {
   return true;
 }
 
-bool ends_with_fcs(Bytes record) {
-  if (record.size() < kFcsBytes) return false;
-  const Bytes frame = record.first(record.size() - kFcsBytes);
-  return fcs_fast(frame) == load_le16(frame.end());
-}
-
 void put_tap_fact(std::uint16_t type, std::uint64_t value, std::size_t size, std::string& out) {
   std::uint8_t fact[12] = {};
   store_le16(fact, type);
@@ -151,7 +145,37 @@ void put_tap_fact(std::uint16_t type, std::uint64_t value, std::size_t size, std
   out.append(reinterpret_cast<const char*>(fact), 4 + (size + 3) / 4 * 4);
 }
 
+// Reads the record that a PPI header precedes. What the header's fields state is not kept.
+void decode_ppi(Bytes record, std::uint64_t original_bytes, ReqId container, Packet& packet) {
+  constexpr std::size_t kHeaderBytes = 8;
+  packet.framing = Framing::kRadio;
+  const bool has_sizes = record.size() >= kHeaderBytes;
+  const std::size_t header = has_sizes ? load_le16(record.data() + 2) : kHeaderBytes;
+  if (record.size() < header) {
+    const bool cut = original_bytes > record.size();
+    packet.error =
+        fail(cut ? Fault::kCut : Fault::kTruncated, record.size(), cut ? ReqId::kNone : container)
+            .error;
+    return;
+  }
+  const std::uint32_t inner = load_le32(record.data() + 4);
+  if (header < kHeaderBytes || inner == kLinkPpi) {
+    packet.error = fail(Fault::kUnexpected, header < kHeaderBytes ? 2 : 4, container).error;
+    return;
+  }
+  packet.offset_bytes += header;
+  decode_record(record.from(header), original_bytes - header, static_cast<std::uint16_t>(inner),
+                container, packet);
+  packet.radio.more = packet.radio.more || header > kHeaderBytes;
+}
+
 }  // namespace
+
+bool ends_with_fcs(Bytes record) {
+  if (record.size() <= kFcsBytes) return false;
+  const Bytes frame = record.first(record.size() - kFcsBytes);
+  return fcs_fast(frame) == load_le16(frame.end());
+}
 
 void append_tap_header(const RadioFacts& facts, bool has_fcs, std::string& out) {
   const std::size_t begin = out.size();
@@ -207,6 +231,7 @@ void decode_record(Bytes record, std::uint64_t original_bytes, std::uint16_t lin
     case kLinkRadioFcs:
     case kLinkRadioNoFcs:
     case kLinkRadioTap: decode_radio(record, link_type, cut, packet); break;
+    case kLinkPpi: return decode_ppi(record, original_bytes, container, packet);
     default:
       packet.framing = Framing::kBare;
       packet.error = fail(Fault::kUnsupported, 0, container).error;

@@ -16,6 +16,7 @@ inline constexpr std::uint16_t kLinkRadioNoFcs = 230;  ///< IEEE802_15_4_NOFCS.
 inline constexpr std::uint16_t kLinkRadioTap = 283;    ///< IEEE802_15_4_TAP.
 inline constexpr std::uint16_t kLinkRadioLinux = 191;  ///< IEEE802_15_4_LINUX.
 inline constexpr std::uint16_t kLinkRadioPhy = 215;    ///< IEEE802_15_4_NONASK_PHY.
+inline constexpr std::uint16_t kLinkPpi = 192;         ///< A header, then a record of another type.
 // Of networks that carry ZEP packets.
 inline constexpr std::uint16_t kLinkEthernet = 1;
 inline constexpr std::uint16_t kLinkRawIp = 101;
@@ -39,6 +40,9 @@ inline constexpr std::size_t kRadioFrameMax = 127;  ///< FCS included.
 /// sections 6.4.1 and 7.2.1; LINKTYPE_IEEE802_15_4_TAP.
 void decode_radio_record(Bytes record, std::uint16_t link_type, Packet& packet);
 
+/// Returns whether a frame ends with the FCS of the bytes before.
+bool ends_with_fcs(Bytes frame);
+
 /// Appends a TAP header with the packet's facts before a frame that has an FCS or none.
 void append_tap_header(const RadioFacts& facts, bool has_fcs, std::string& out);
 
@@ -46,7 +50,8 @@ void append_tap_header(const RadioFacts& facts, bool has_fcs, std::string& out);
 /// size. `packet` comes with offset_bytes of the record's first byte. Of link type 191 nothing says
 /// whether frames have their FCS: one that fits is it. Of a network's packet the ZEP packet in it
 /// is read. Faults: those of the link type, kCut (not captured whole, which breaks no rule),
-/// kUnexpected and kTruncated by rule `container` (215: the preamble is not as it must be),
+/// kUnexpected and kTruncated by rule `container` (215: the preamble is not as it must be; 192: the
+/// header is not),
 /// kUnsupported (another link type, or a network's packet without ZEP: kBare and the bytes as they
 /// are).
 void decode_record(Bytes record, std::uint64_t original_bytes, std::uint16_t link_type,

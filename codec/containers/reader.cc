@@ -8,6 +8,7 @@
 #include "codec/containers/pcap_reader.h"
 #include "codec/containers/pcapng_format.h"
 #include "codec/containers/pcapng_reader.h"
+#include "codec/containers/radio_line.h"
 #include "codec/containers/sf_reader.h"
 #include "codec/runtime/hdlc.h"
 
@@ -16,8 +17,10 @@ namespace {
 
 // More would not make the guess better.
 constexpr std::size_t kSampleMax = 16 * 1024;
-// A serial packet's header of 8 bytes; a shorter line of hex digits may be a word.
-constexpr std::size_t kPacketLineBytes = 8;
+
+Bytes sample_of(Bytes first_bytes) {
+  return first_bytes.first(std::min(first_bytes.size(), kSampleMax));
+}
 
 bool is_pcap(Bytes first) {
   if (first.size() < 4) return false;
@@ -36,19 +39,45 @@ bool is_json(Bytes first) {
 }
 
 struct TextLines {
-  bool hex = false;      // There is a line of hex text, or a comment.
-  bool packets = false;  // There is a line that is long enough for a packet.
-  bool others = false;   // There is a line that is neither hex text, nor a comment, nor empty.
-  bool noise = true;     // All of those look like what tools print between packets.
+  bool hex = false;           // There is a line of hex text, or a comment.
+  bool packets = false;       // There is a line that is long enough for a packet.
+  bool others = false;        // There is a line that is neither hex text, nor a comment, nor empty.
+  bool noise = true;          // All of those look like what tools print between packets.
+  std::size_t of_bytes = 0;   // Lines of hex text that have bytes.
+  std::size_t with_fcs = 0;   // Of those: end with the FCS of the bytes before.
+  std::size_t dump_rows = 0;  // Lines that are as a row of a hex dump.
 };
+
+// Returns whether a line is as a row of a hex dump: an offset that is a multiple of 16, a colon or
+// blanks, and bytes. One that begins with 0000 has eight bytes at least, as it may be hex text,
+// too.
+bool is_dump_row(Bytes line) {
+  constexpr std::ptrdiff_t kEightBytes = 24;
+  const auto* const end = std::find_if_not(line.begin(), line.end(), is_hex_digit);
+  const auto digits = end - line.begin();
+  if (digits < 4 || digits > 8 || end[-1] != '0' || line.end() - end < 4) return false;
+  if (*end == ':') return true;
+  const auto* const byte = std::find_if(end, line.end(), [](char c) { return c != ' '; });
+  const bool apart = line.end() - byte > 1 && is_hex_digit(byte[0]) && is_hex_digit(byte[1]) &&
+                     (line.end() - byte == 2 || byte[2] == ' ');
+  const bool first = std::all_of(line.begin(), end, [](char c) { return c == '0'; });
+  return *end == ' ' && apart && (!first || line.end() - byte >= kEightBytes - 1);
+}
 
 TextLines look_at_lines(Bytes sample) {
   TextLines found;
   std::vector<std::uint8_t> bytes;
+  RadioLine stated;
   for (const std::uint8_t* p = sample.begin(); p != sample.end();) {
     const std::uint8_t* const newline = std::find(p, sample.end(), '\n');
     const bool whole = newline != sample.end();
     const Bytes line(p, static_cast<std::size_t>(newline - p));
+    p = whole ? newline + 1 : newline;
+    found.dump_rows += is_dump_row(line);
+    if (read_radio_line(line, stated, bytes)) {
+      found.packets = found.others = true;
+      continue;
+    }
     const Error error = decode_hex_line(line, bytes);
     // The sample may end within a byte of its last line.
     if (error.fault != Fault::kNone && (whole || error.offset_bytes < line.size())) {
@@ -58,16 +87,22 @@ TextLines look_at_lines(Bytes sample) {
       const bool comment = std::find(line.begin(), line.end(), '#') != line.end();
       found.hex = found.hex || !bytes.empty() || comment;
       found.packets = found.packets || bytes.size() >= kPacketLineBytes;
+      found.of_bytes += !bytes.empty();
+      found.with_fcs += ends_with_fcs(Bytes(bytes.data(), bytes.size()));
     }
-    p = whole ? newline + 1 : newline;
   }
   return found;
+}
+
+bool is_hex_dump(const TextLines& found) {
+  return found.dump_rows != 0 && 2 * found.dump_rows >= found.of_bytes;
 }
 
 // Returns kHex if every line is hex text, a comment or empty, and not all are empty; kLog if there
 // are packets among lines of noise.
 InputFormat text_format(Bytes sample) {
   const TextLines found = look_at_lines(sample);
+  if (is_hex_dump(found)) return InputFormat::kUnknown;
   if (found.hex && !found.others) return InputFormat::kHex;
   return found.packets && found.noise ? InputFormat::kLog : InputFormat::kUnknown;
 }
@@ -112,8 +147,15 @@ std::unique_ptr<Reader> make_reader(InputFormat format, const ReaderOptions& opt
   return nullptr;
 }
 
+bool is_hex_dump(Bytes first_bytes) { return is_hex_dump(look_at_lines(sample_of(first_bytes))); }
+
+bool lines_end_with_fcs(Bytes first_bytes) {
+  const TextLines found = look_at_lines(sample_of(first_bytes));
+  return found.with_fcs != 0 && 2 * found.with_fcs >= found.of_bytes;
+}
+
 InputFormat detect(Bytes first_bytes) {
-  const Bytes sample = first_bytes.first(std::min(first_bytes.size(), kSampleMax));
+  const Bytes sample = sample_of(first_bytes);
   if (sample.size() >= 4 && load_le32(sample.data()) == pcapng::kSectionHeader) {
     return InputFormat::kPcapng;
   }

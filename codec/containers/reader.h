@@ -79,4 +79,12 @@ std::unique_ptr<Reader> make_reader(InputFormat format, const ReaderOptions& opt
 /// content alone.
 InputFormat detect(Bytes first_bytes);
 
+/// Returns whether lines of hex text that begin like this are radio frames with their FCS: whether
+/// at least half of them end with the check sum of the bytes before.
+bool lines_end_with_fcs(Bytes first_bytes);
+
+/// Returns whether text that begins like this is a hex dump whose rows begin with offsets, which is
+/// no hex text.
+bool is_hex_dump(Bytes first_bytes);
+
 }  // namespace rubric

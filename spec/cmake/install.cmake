@@ -73,11 +73,11 @@ add_custom_target(rubric_completions ALL DEPENDS ${completions})
 
 find_program(HELP2MAN help2man)
 if(HELP2MAN)
-  add_custom_command(OUTPUT man/rubric.1
+  add_custom_command(OUTPUT man/rubric.1.gz
     COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/spec/cmake/man_pages.sh ${HELP2MAN} $<TARGET_FILE:rubric>
       $<TARGET_FILE:rubricc> $<TARGET_FILE:rubric-extcap> man
     DEPENDS rubric rubricc rubric-extcap spec/cmake/man_pages.sh VERBATIM)
-  add_custom_target(rubric_man ALL DEPENDS man/rubric.1)
+  add_custom_target(rubric_man ALL DEPENDS man/rubric.1.gz)
   install(DIRECTORY ${PROJECT_BINARY_DIR}/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1
     COMPONENT tool)
 else()
@@ -85,7 +85,20 @@ else()
 endif()
 install(FILES tools/wireshark/generated/rubric.lua
   DESTINATION ${CMAKE_INSTALL_DATADIR}/rubric/wireshark COMPONENT tool)
-install(FILES LICENSE README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT tool)
+# What rubricc reads.
+install(FILES spec/requirements.yaml DESTINATION ${CMAKE_INSTALL_DATADIR}/rubric/spec
+  COMPONENT tool)
+install(DIRECTORY spec/profiles spec/wire DESTINATION ${CMAKE_INSTALL_DATADIR}/rubric/spec
+  COMPONENT tool FILES_MATCHING PATTERN "*.yaml" PATTERN "*.ksy")
+install(DIRECTORY conformance/cases DESTINATION ${CMAKE_INSTALL_DATADIR}/rubric/conformance
+  COMPONENT tool FILES_MATCHING PATTERN "*.rtr")
+# The folders that README.md links to are not installed.
+file(READ README.md readme)
+string(REGEX REPLACE "\\[([^]]+)\\]\\([^)]*\\)" "\\1" readme "${readme}")
+file(WRITE ${PROJECT_BINARY_DIR}/installed/README.md "${readme}")
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS README.md)
+install(FILES LICENSE ${PROJECT_BINARY_DIR}/installed/README.md
+  DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT tool)
 # The book, if it was made: target `book`.
 install(FILES ${PROJECT_BINARY_DIR}/doc/rubric.html DESTINATION ${CMAKE_INSTALL_DOCDIR}
   COMPONENT tool OPTIONAL)
@@ -95,6 +108,32 @@ add_dependencies(installable rubric rubricc rubric-extcap rubric_completions ${l
 if(HELP2MAN)
   add_dependencies(installable rubric_man)
 endif()
+
+# What Debian's policy asks of every package.
+string(TIMESTAMP date "%a, %d %b %Y %H:%M:%S +0000" UTC)
+foreach(pair tool:rubric dev:librubric-dev)
+  string(REPLACE ":" ";" pair ${pair})
+  list(POP_FRONT pair part package)
+  set(folder ${PROJECT_BINARY_DIR}/installed/${package})
+  file(WRITE ${folder}/changelog "${package} (${PROJECT_VERSION}) unstable; urgency=medium
+
+  * See CHANGELOG.md in the sources.
+
+ -- Rubric maintainers <maintainers@rubric.invalid>  ${date}
+")
+  file(WRITE ${folder}/copyright
+    "Format: https://www.debian.org/doc/packaging-manuals/copyright-format/1.0/
+Upstream-Name: rubric
+
+Files: *
+Copyright: the Rubric maintainers
+License: Apache-2.0
+ The text is in /usr/share/common-licenses/Apache-2.0.
+")
+  execute_process(COMMAND gzip -9nf changelog WORKING_DIRECTORY ${folder})
+  install(FILES ${folder}/changelog.gz ${folder}/copyright
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${package} COMPONENT ${part})
+endforeach()
 
 set(CPACK_PROJECT_CONFIG_FILE ${PROJECT_SOURCE_DIR}/spec/cmake/package_tools.cmake)
 set(CPACK_GENERATOR DEB)
@@ -112,6 +151,7 @@ set(CPACK_COMPONENT_TOOL_DESCRIPTION
 Communication Layer, and tests implementations against a reference machine.")
 set(CPACK_COMPONENT_DEV_DESCRIPTION
   "The codec and the node (headers only), and the conformance library.")
+set(CPACK_STRIP_FILES ON)
 set(CPACK_DEBIAN_TOOL_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_TOOL_PACKAGE_SECTION net)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)

@@ -19,3 +19,4 @@ page() {  # page NAME WHAT COMMAND
 page rubric "codec and conformance test kit for the RUBICON Communication Layer" "$rubric"
 page rubricc "compiler of wire specs" "$rubricc"
 page rubric-extcap "captures for Wireshark from motes and serial forwarders" "$extcap"
+gzip -9n "$folder"/*.1

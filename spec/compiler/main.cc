@@ -4,6 +4,7 @@
 #include <fstream>
 #include <iostream>
 #include <iterator>
+#include <map>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -31,6 +32,29 @@ struct CompilerOptions {
 
 bool wants(const CompilerOptions& options, std::string_view emitter) {
   return std::find(options.emit.begin(), options.emit.end(), emitter) != options.emit.end();
+}
+
+/// Returns the path, or what was installed beside this program where there is nothing at the path.
+std::string found(const std::string& path) {
+  namespace fs = std::filesystem;
+  std::error_code none;
+  const fs::path program = fs::read_symlink("/proc/self/exe", none);
+  const fs::path shipped = program.parent_path().parent_path() / "share/rubric" / path;
+  return !fs::exists(path, none) && fs::exists(shipped, none) ? shipped.string() : path;
+}
+
+/// Returns the specs that were installed, by name, for imports.
+std::map<std::string, std::string> installed_specs() {
+  std::map<std::string, std::string> out;
+  std::error_code none;
+  const std::filesystem::path folder = found("spec/wire");
+  if (folder.is_relative()) return out;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, none)) {
+    if (entry.path().extension() != ".ksy") continue;
+    std::ifstream in(entry.path(), std::ios::binary);
+    out[entry.path().stem()] = std::string(std::istreambuf_iterator<char>(in), {});
+  }
+  return out;
 }
 
 void append(rubricc::GeneratedFiles& all, rubricc::GeneratedFiles more) {
@@ -74,7 +98,10 @@ bool write(const std::filesystem::path& folder, const rubricc::GeneratedFile& fi
   return false;
 }
 
-int run(const CompilerOptions& options) {
+int run(CompilerOptions options) {
+  options.requirements = found(options.requirements);
+  options.profiles = found(options.profiles);
+  options.cases = found(options.cases);
   std::vector<std::string> inputs = options.files;
   inputs.push_back(options.requirements);
   for (const std::string& input : inputs) {
@@ -94,7 +121,8 @@ int run(const CompilerOptions& options) {
   if (options.check || wants(options, "cases") || wants(options, "json")) {
     rubricc::load_cases(rubricc::case_files(options.cases), model, diagnostics);
   }
-  rubricc::load_specs(options.files, model, diagnostics);
+  const std::map<std::string, std::string> installed = installed_specs();
+  rubricc::load_specs(options.files, model, diagnostics, {installed.begin(), installed.end()});
   rubricc::check_model(model, diagnostics);
   std::cerr << diagnostics.print();
   if (!diagnostics.empty()) return rubric::cli::kExitFindings;
@@ -131,7 +159,10 @@ int main(int argc, char** argv) {
   const auto out = program.add_option("--out", options.out, "Write into this folder");
   program.add_option("FILE", options.files, "Wire specs (.ksy)").required();
   program.footer(
-      "Exit codes: 0 fine, 1 mistakes in the input, 2 usage, 3 a file cannot be read or written.");
+      "What is read by default is what was installed with this program, unless it is below the\n"
+      "folder where it runs.\n"
+      "Exit codes: 0 fine, 1 mistakes in the input, 64 usage, 66 a file cannot be read, 74 a file\n"
+      "cannot be written.");
   check.excludes(emit).excludes(out);
   emit.needs(out);
   program.exit_code_of([&] {

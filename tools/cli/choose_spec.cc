@@ -12,7 +12,9 @@
 #include "codec/reflect/frame.h"
 #include "codec/text/packed.h"
 #include "codec/text/text.h"
+#include "tools/cli/fcs.h"
 #include "tools/cli/input_file.h"
+#include "tools/cli/reading.h"
 #include "tools/cli/specs.h"
 
 namespace rubric::cli {
@@ -58,10 +60,11 @@ std::vector<std::uint8_t> plain_beginning(const std::vector<std::uint8_t>& bytes
 
 Sample sample_of(const InputOptions& options, Bytes beginning) {
   Sample sample;
-  const InputFormat format = format_of(options, beginning);
-  const std::unique_ptr<Reader> reader = make_reader(format, reader_options(options));
+  const Reading reading = reading_of(options, beginning);
+  const std::unique_ptr<Reader> reader = make_reader(reading.format, reading.options);
   if (!reader) return sample;
-  auto take = [&](const Packet& packet) {
+  auto take = [&](Packet packet) {
+    reread_fcs(reading.fcs, packet);
     const bool sound = packet.error.fault == Fault::kNone;
     if (!sound || packet.bytes.empty() || sample.packets.size() == kPacketsMost) return;
     sample.packets.push_back(packet);
@@ -69,7 +72,8 @@ Sample sample_of(const InputOptions& options, Bytes beginning) {
   };
   reader->feed(beginning, take);
   // Text needs no end of line; of other formats the rest is a cut frame.
-  if (format == InputFormat::kHex || format == InputFormat::kLog) reader->finish(take);
+  const bool text = reading.format == InputFormat::kHex || reading.format == InputFormat::kLog;
+  if (text) reader->finish(take);
   for (std::size_t i = 0; i < sample.packets.size(); ++i) {
     sample.packets[i].bytes = view(sample.bytes[i]);
     sample.packets[i].comment = {};

@@ -28,6 +28,7 @@
 #include "tools/cli/fcs.h"
 #include "tools/cli/input_file.h"
 #include "tools/cli/progress.h"
+#include "tools/cli/reading.h"
 #include "tools/cli/specs.h"
 
 namespace rubric::cli {
@@ -41,56 +42,6 @@ constexpr std::size_t kBareMost = kDetectMost;
 
 constexpr std::chrono::milliseconds kReconnectEvery{1000};
 constexpr std::chrono::milliseconds kAirPatience{100};
-
-/// Hex text whose lines are 802.15.4 frames without FCS.
-constexpr const char* kHexRadio = "hex-radio";
-
-struct FormatName {
-  const char* name;
-  InputFormat format;
-};
-constexpr FormatName kFormats[] = {
-    {"hdlc", InputFormat::kHdlc},     {"sf", InputFormat::kSf},   {"pcap", InputFormat::kPcap},
-    {"pcapng", InputFormat::kPcapng}, {"hex", InputFormat::kHex}, {kHexRadio, InputFormat::kHex},
-    {"log", InputFormat::kLog},
-};
-
-/// The names of link types in --link-type.
-struct LinkName {
-  const char* name;
-  std::uint16_t link_type;
-};
-constexpr LinkName kLinks[] = {
-    {"serial", kLinkSerial},      {"sf", kLinkSf},
-    {"radio", kLinkRadioNoFcs},   {"radio-fcs", kLinkRadioFcs},
-    {"radio-phy", kLinkRadioPhy}, {"radio-tap", kLinkRadioTap},
-    {"ethernet", kLinkEthernet},
-};
-
-struct UserLink {
-  std::uint16_t from;
-  std::uint16_t to;
-};
-
-// Parses 149=radio-fcs.
-std::optional<UserLink> parse_user_link(const std::string& text) {
-  const std::size_t equals = text.find('=');
-  const bool digits = equals == 3 && text.find_first_not_of("0123456789") == equals;
-  const int from = digits ? std::stoi(text) : 0;
-  if (from < kLinkUserFirst || from > kLinkUserLast) return std::nullopt;
-  for (const LinkName& known : kLinks) {
-    if (text.substr(equals + 1) != known.name) continue;
-    return UserLink{static_cast<std::uint16_t>(from), known.link_type};
-  }
-  return std::nullopt;
-}
-
-std::string check_user_link(const std::string& text) {
-  return parse_user_link(text) ? ""
-                               : "expected a link type from 147 to 162 and what it is, as in "
-                                 "149=radio-fcs; given '" +
-                                     text + "'";
-}
 
 /// Returns what a link type holds that is not read here; empty where nobody meets it with motes.
 std::string_view foreign_link_name(std::uint16_t link_type) {
@@ -107,20 +58,6 @@ std::string_view foreign_link_name(std::uint16_t link_type) {
     case 256: return " (Bluetooth Low Energy)";
     default: return "";
   }
-}
-
-std::string_view format_name(InputFormat format) {
-  for (const FormatName& known : kFormats) {
-    if (known.format == format) return known.name;
-  }
-  return "unknown";
-}
-
-InputFormat find_format(std::string_view name) {
-  for (const FormatName& known : kFormats) {
-    if (name == known.name) return known.format;
-  }
-  return InputFormat::kUnknown;
 }
 
 /// Returns the files. Without FILE at a terminal it is $MOTECOM, since nobody types frames.
@@ -143,13 +80,15 @@ std::uint64_t total_size(const std::vector<std::string>& files) {
 /// One run over all files.
 class Run {
  public:
-  Run(const InputOptions& options, const OnPacket& on_packet, const OnIdle& on_idle)
+  Run(const InputOptions& options, const OnPacket& on_packet, const OnIdle& on_idle,
+      const OtherText& other)
       : options_(options),
         on_packet_(on_packet),
         on_idle_(on_idle),
+        other_(other),
         files_(names_of(options)),
         chunk_(std::make_unique_for_overwrite<std::uint8_t[]>(kChunkBytes)),
-        progress_(total_size(files_), options.progress) {}
+        progress_(total_size(files_), options.progress, options.prints) {}
 
   InputResult all() {
     for (std::size_t i = 0; i < files_.size() && !result_.stopped; ++i) {
@@ -175,6 +114,8 @@ class Run {
         complain(error.what());
       }
     }
+    result_.damaged = damaged_ && !result_.failed;
+    result_.failed = result_.failed || damaged_;
     return result_;
   }
 
@@ -276,37 +217,59 @@ class Run {
     }
     passed_over_.clear();
     InputFile file(files_[source_.file_index], options_.follow, on_idle_);
-    std::size_t size = 0;
-    InputFormat format = find_format(options_.format);
     const bool bare = !options_.as_message.empty();
+    InputFormat found = InputFormat::kUnknown;
+    // A format that is named needs no look at the content, so that a line of a pipe is read at
+    // once.
+    std::size_t size = options_.format == "auto" || other_.is_it
+                           ? look(file, found)
+                           : file.read(chunk_.get(), kChunkBytes);
+    const Bytes beginning(chunk_.get(), size);
+    if (other_.is_it && other_.is_it(beginning)) return other_.take(source_, rest_of(file, size));
     if (options_.format == "auto") {
-      size = look(file, format);
+      result_.empty = result_.empty || size == 0;
       if (size == 0) return remark("is empty");  // Nothing in it, nothing wrong with it.
-      if (format == InputFormat::kUnknown && !bare) {
-        return complain(
-            "this begins like no serial line, forwarder stream, pcap, pcapng or hex "
-            "text; name it with --input-format");
+      if (found == InputFormat::kUnknown && (!bare || is_hex_dump(beginning))) {
+        return complain(unknown_format(beginning));
       }
-      if (bare && (format == InputFormat::kPcap || format == InputFormat::kPcapng)) {
+      if (bare && (found == InputFormat::kPcap || found == InputFormat::kPcapng)) {
         return complain(
             fmt::format("this is {}; --as takes a message alone (--input-format bare "
                         "reads the file as one)",
-                        format_name(format)));
+                        format_name(found)));
       }
-      if (format == InputFormat::kJsonl && !bare) {
+      if (found == InputFormat::kJsonl && !bare) {
         return complain("this is JSON; 'rubric encode' reads it");
       }
     }
-    const bool text = format == InputFormat::kHex || format == InputFormat::kLog;
+    const Reading reading = reading_of(options_, beginning);
+    const bool text = reading.format == InputFormat::kHex || reading.format == InputFormat::kLog;
     if (bare && !text) return whole(file, size);
-    ReaderOptions reader_options = cli::reader_options(options_);
-    if (bare) reader_options.hex_framing = Framing::kBare;
-    std::unique_ptr<Reader> reader = make_reader(format, reader_options);
-    source_.format = format_name(format);
-    if (size == 0) size = file.read(chunk_.get(), kChunkBytes);
-    choose_fcs(format, reader_options, Bytes(chunk_.get(), size));
+    if (!reading.remark.empty()) remark(reading.remark);
+    fcs_ = reading.fcs;
+    std::unique_ptr<Reader> reader = make_reader(reading.format, reading.options);
+    source_.format = format_name(reading.format);
     pump(file, *reader, size);
     say_what_is_left_out(*reader);
+  }
+
+  static std::string_view unknown_format(Bytes beginning) {
+    if (is_hex_dump(beginning)) {
+      return "this is a hex dump with offsets; 'text2pcap -l 195 FILE FILE.pcap' makes a capture "
+             "of "
+             "it (-l 230 for radio frames without FCS)";
+    }
+    return "this begins like no serial line, forwarder stream, pcap, pcapng or hex text; name it "
+           "with --input-format, or try 'tshark -r FILE -w FILE.pcapng'";
+  }
+
+  // Returns the whole text of a file of which `size` bytes are read.
+  std::string rest_of(InputFile& file, std::size_t size) {
+    std::string out;
+    for (; size != 0; size = file.read(chunk_.get(), kChunkBytes)) {
+      out.append(reinterpret_cast<const char*>(chunk_.get()), size);
+    }
+    return out;
   }
 
   // Says once for a file what in it is nothing for us.
@@ -337,20 +300,6 @@ class Run {
   static bool is_foreign(const Packet& packet) {
     return packet.error.fault == Fault::kUnsupported && packet.framing == Framing::kBare &&
            packet.link_type != 0;
-  }
-
-  // Decides what ends the radio frames of a file from its beginning.
-  void choose_fcs(InputFormat format, const ReaderOptions& reader_options, Bytes beginning) {
-    fcs_ = fcs_kind(options_.fcs);
-    if (options_.fcs != "auto") return;
-    FcsGuess guess;
-    auto look = [&](const Packet& packet) { guess.take(packet); };
-    if (format == InputFormat::kPcap || format == InputFormat::kPcapng) {
-      make_reader(format, reader_options)->feed(beginning, look);
-    }
-    if (!guess.is_cc24xx()) return;
-    fcs_ = FcsKind::kCc24xx;
-    remark("its radio frames end with RSSI and link quality in place of the FCS (--fcs cc24xx)");
   }
 
   // Reads until the content shows its format.
@@ -409,8 +358,9 @@ class Run {
                                  ? std::string_view(interfaces[packet.interface_id].name)
                                  : std::string_view{};
     if (is_damage(packet)) {
-      complain(fmt::format("damaged at byte {}: {}", packet.offset_bytes,
-                           reflect::fault_sentence(packet.error.fault)));
+      damaged_ = true;
+      remark(fmt::format("damaged at byte {}: {}", packet.offset_bytes,
+                         reflect::fault_sentence(packet.error.fault)));
     }
     ++source_.number;
     if (is_foreign(packet)) {
@@ -423,12 +373,14 @@ class Run {
   const InputOptions& options_;
   const OnPacket& on_packet_;
   const OnIdle& on_idle_;
+  const OtherText& other_;
   const std::vector<std::string> files_;
   std::unique_ptr<std::uint8_t[]> chunk_;
   Progress progress_;
   Source source_;
   InputResult result_;
   FcsKind fcs_ = FcsKind::kCrc;
+  bool damaged_ = false;  // A file has damaged places.
   std::map<std::uint16_t, std::uint64_t>
       passed_over_;    // Packets of the present file, by link type.
   bool lost_ = false;  // The line is gone, and that was said.
@@ -439,34 +391,13 @@ class Run {
 void add_input_options(Command& app, InputOptions& options) {
   app.add_option("FILE", options.files,
                  "Captures, in order, compressed by gzip or zstd or not; none or - is stdin");
-  add_capture_options(app, options);
+  add_capture_options(app, options, true);
   options.spec = kAutoSpec;
   add_spec_option(app, options);
   app.add_option(
          "--as", options.as_message,
          "Read the input as this message alone: each line of hex text, or a binary file whole")
       .check(given);
-}
-
-void add_capture_options(Command& app, InputOptions& options) {
-  app.add_option("--input-format", options.format,
-                 "Read the input as auto, hdlc (bytes of a serial line), sf (serial forwarder), "
-                 "pcap, pcapng, hex (text, from the dispatch byte on, or from a flag 7E), log (the "
-                 "same among other lines), hex-radio (text, 802.15.4; with FCS if --fcs is given) "
-                 "or bare (one message, with --as)")
-      .one_of({"auto", "hdlc", "sf", "pcap", "pcapng", "hex", "log", kHexRadio, "bare"})
-      .show_default();
-  app.add_option("--fcs", options.fcs,
-                 "Read the last two bytes of radio frames with link type 195 as crc (their FCS), "
-                 "cc24xx (RSSI, link quality and CRC bit of TI's chips), none (data) or auto "
-                 "(decided from the beginning of the file)")
-      .one_of({"auto", "crc", "cc24xx", "none"})
-      .show_default();
-  app.add_option("--link-type", options.links,
-                 "Read a user-defined link type, 147 to 162, as serial, sf, radio, radio-fcs, "
-                 "radio-phy, radio-tap or ethernet: 149=radio-fcs")
-      .check(check_user_link)
-      .repeatable();
 }
 
 void add_spec_option(Command& app, InputOptions& options, const std::string& names) {
@@ -497,23 +428,6 @@ void add_live_options(Command& app, InputOptions& options) {
   app.add_flag("--listen-only", options.listen_only,
                "Confirm no frames of a serial line, so that nothing is written to it");
   app.add_flag("--reconnect", options.reconnect, "Open a line again when it comes back");
-}
-
-InputFormat format_of(const InputOptions& options, Bytes beginning) {
-  return options.format == "auto" ? detect(beginning) : find_format(options.format);
-}
-
-ReaderOptions reader_options(const InputOptions& options) {
-  ReaderOptions out;
-  if (options.format == kHexRadio) {
-    out.hex_framing = Framing::kRadio;
-    out.hex_has_fcs = options.fcs == "crc" || options.fcs == "cc24xx";
-  }
-  for (const std::string& text : options.links) {
-    const std::optional<UserLink> link = parse_user_link(text);
-    if (link) out.user_links[link->from - kLinkUserFirst] = link->to;
-  }
-  return out;
 }
 
 bool goes_on(const InputOptions& options) {
@@ -557,8 +471,8 @@ const reflect::Type* chosen_message(const InputOptions& options,
 }
 
 InputResult read_packets(const InputOptions& options, const OnPacket& on_packet,
-                         const OnIdle& on_idle) {
-  return Run(options, on_packet, on_idle).all();
+                         const OnIdle& on_idle, const OtherText& other) {
+  return Run(options, on_packet, on_idle, other).all();
 }
 
 bool is_damage(const Packet& packet) {

@@ -22,6 +22,7 @@ struct InputOptions {
   std::string spec = "rubicon";    ///< A protocol's id, or a .ksy file.
   std::string as_message;          ///< Bytes are this message alone; empty: framed packets.
   bool progress = true;            ///< A bar on stderr for long files, where that is a terminal.
+  bool prints = true;              ///< Output runs along on stdout; else it comes at the end.
   bool follow = false;             ///< At a file's end wait for more of it.
   bool listen_only = false;        ///< Write nothing to a serial line.
   bool reconnect = false;          ///< A line that is gone is opened again.
@@ -30,8 +31,8 @@ struct InputOptions {
 /// Adds FILE..., --spec, --as and those of add_capture_options() to a subcommand.
 void add_input_options(Command& app, InputOptions& options);
 
-/// Adds --input-format, --fcs and --link-type.
-void add_capture_options(Command& app, InputOptions& options);
+/// Adds --input-format, of which `bare` goes with --as, --fcs and --link-type.
+void add_capture_options(Command& app, InputOptions& options, bool bare = false);
 
 /// Adds --spec, under these names.
 void add_spec_option(Command& app, InputOptions& options, const std::string& names = "--spec");
@@ -39,13 +40,6 @@ void add_spec_option(Command& app, InputOptions& options, const std::string& nam
 /// Adds --follow, --listen-only and --reconnect: for subcommands whose files may be lines in
 /// use (live/line.h). Without FILE, at a terminal, $MOTECOM is taken.
 void add_live_options(Command& app, InputOptions& options);
-
-/// Returns the format of an input that begins with these bytes: that of --input-format, else by
-/// content.
-InputFormat format_of(const InputOptions& options, Bytes beginning);
-
-/// Returns what --input-format, --fcs and --link-type say to a reader.
-ReaderOptions reader_options(const InputOptions& options);
 
 /// Returns whether the input goes on until somebody ends it: a line in use, a followed file, a
 /// pipe.
@@ -72,6 +66,8 @@ struct Source {
 /// The result of reading.
 struct InputResult {
   bool failed = false;   ///< A file could not be opened or read, or is damaged; said on stderr.
+  bool damaged = false;  ///< Nothing worse happened than that a file has damaged places.
+  bool empty = false;    ///< A file has nothing in it; said on stderr.
   bool stopped = false;  ///< The callback asked to stop.
   bool live = false;     ///< A line, or a followed file, was read until the user stopped it.
 };
@@ -81,10 +77,16 @@ using OnPacket = std::function<bool(const Packet&, const Source&)>;
 /// Called before reading waits for more of a pipe or a device: a good time to flush output.
 using OnIdle = std::function<void()>;
 
-/// Reads all files in constant memory. Delivers a damaged place of a capture file as a packet with
-/// an error, and reads on after it and in later files.
+/// What to do with inputs that are no captures but text of another kind.
+struct OtherText {
+  std::function<bool(Bytes beginning)> is_it;
+  std::function<void(const Source&, std::string text)> take;  ///< Called with the whole of it.
+};
+
+/// Reads all files in constant memory, except for the text that `other` takes. Delivers a damaged
+/// place of a capture file as a packet with an error, and reads on after it and in later files.
 InputResult read_packets(const InputOptions& options, const OnPacket& on_packet,
-                         const OnIdle& on_idle = {});
+                         const OnIdle& on_idle = {}, const OtherText& other = {});
 
 /// Returns whether this packet is a damaged place of its file rather than a malformed frame.
 bool is_damage(const Packet& packet);

@@ -14,7 +14,7 @@
 #include <utility>
 
 #include "codec/lines/stop.h"
-#include "codec/text/text.h"
+#include "tools/cli/terminal.h"
 
 namespace rubric::cli {
 namespace {
@@ -56,10 +56,7 @@ InputFile::InputFile(const std::string& name, bool follow, const std::function<v
       is_stdin_(name == "-"),
       follow_(follow),
       on_idle_(on_idle) {
-  static bool said = false;
-  if (is_stdin_ && ::isatty(fd_) != 0 && !std::exchange(said, true)) {
-    text::print(stderr, "rubric: reads what is typed here; Ctrl-D on a line of its own ends it\n");
-  }
+  if (is_stdin_) say_what_is_awaited();
   if (fd_ < 0) throw std::system_error(errno, std::generic_category());
   struct stat status {};
   if (::fstat(fd_, &status) == 0) is_regular_ = S_ISREG(status.st_mode);

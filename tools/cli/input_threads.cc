@@ -64,6 +64,7 @@ void InputThreads::keep(const Packet& packet, const Source& source, std::size_t 
   kept.comment = packet.comment;
   kept.interface_name = source.interface_name;
   kept.file = file;
+  kept.number = source.number;
   std::unique_lock lock(mutex_);
   taken_.wait(lock, [&] { return waiting_.size() < kWaitingMost || lines::stop_requested(); });
   waiting_.push_back(std::move(kept));
@@ -84,7 +85,7 @@ bool InputThreads::take(std::chrono::steady_clock::time_point until, const OnPac
   for (Kept& kept : now) {
     kept.packet.bytes = Bytes(kept.bytes.data(), kept.bytes.size());
     kept.packet.comment = kept.comment;
-    on_packet(kept.packet, kept.file, kept.interface_name);
+    on_packet(kept.packet, kept.file, kept.interface_name, kept.number);
   }
   return running || !now.empty();
 }

@@ -26,9 +26,10 @@ class InputThreads {
   InputThreads(const InputThreads&) = delete;
   InputThreads& operator=(const InputThreads&) = delete;
 
-  /// Takes a packet; `file` is an index into options.files. The packet is borrowed, as is the
-  /// interface's name.
-  using OnPacket = std::function<void(const Packet&, std::size_t file, std::string_view interface)>;
+  /// Takes a packet and its number in its file; `file` is an index into options.files. The packet
+  /// is borrowed, as is the interface's name.
+  using OnPacket = std::function<void(const Packet&, std::size_t file, std::string_view interface,
+                                      std::uint64_t number)>;
   /// Passes on the packets that have come, in order, after waiting for them until then at most.
   /// Returns false when all sources have ended and nothing is left. Throws what threads threw.
   bool take(std::chrono::steady_clock::time_point until, const OnPacket& on_packet);
@@ -43,6 +44,7 @@ class InputThreads {
     std::string comment;
     std::string interface_name;
     std::size_t file = 0;
+    std::uint64_t number = 0;
   };
 
   void read(InputOptions options, std::size_t file);

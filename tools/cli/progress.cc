@@ -8,9 +8,9 @@
 
 namespace rubric::cli {
 
-Progress::Progress(std::uint64_t total, bool wanted, Unit unit)
+Progress::Progress(std::uint64_t total, bool wanted, bool prints, Unit unit)
     : unit_(unit),
-      active_(wanted && isatty(2) && !isatty(1)),
+      active_(wanted && isatty(2) && !(prints && isatty(1))),
       total_(total),
       start_(Clock::now()),
       next_(start_ + std::chrono::seconds(1)) {}

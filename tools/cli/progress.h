@@ -7,14 +7,14 @@
 
 namespace rubric::cli {
 
-/// Shows nothing unless stderr is a terminal, stdout is none (the data would run into the bar), and
-/// the work takes a second.
+/// Shows nothing unless stderr is a terminal, stdout is none into which the data would run, and the
+/// work takes a second.
 class Progress {
  public:
   enum class Unit : std::uint8_t { kBytes, kCases };
 
-  /// `total` of all input; 0 if unknown.
-  Progress(std::uint64_t total, bool wanted, Unit unit = Unit::kBytes);
+  /// `total` of all input; 0 if unknown. `prints`: stdout is written to at the same time.
+  Progress(std::uint64_t total, bool wanted, bool prints = true, Unit unit = Unit::kBytes);
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;

@@ -150,7 +150,16 @@ std::string dissector_with(const std::string& file) {
   }
   rubricc::load_specs({file}, model, diagnostics, shipped_specs());
   require_sound(model, diagnostics, rubricc::CheckFor::kDissector);
-  return rubricc::emit_lua(model).front().text;
+  const auto& types = model.specs.back()->types;
+  if (std::none_of(types.begin(), types.end(),
+                   [](const auto& type) { return type->carrier == "serial"; })) {
+    report::print(stderr,
+                  "rubric: {}: no type has '-carrier: serial', so that no packet leads to its "
+                  "messages\n",
+                  file);
+    exit_with(kExitInput);
+  }
+  return rubricc::emit_lua(model, model.specs.back()->id).front().text;
 }
 
 OtherSpecs::OtherSpecs(const reflect::Protocol& chosen) : chosen_(chosen) {

@@ -1,8 +1,12 @@
 #include "tools/cli/terminal.h"
 
 #include <sys/ioctl.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <utility>
+
+#include "codec/text/text.h"
 
 namespace rubric::cli {
 namespace {
@@ -14,11 +18,21 @@ constexpr std::size_t kRowsDefault = 24;
 
 }  // namespace
 
+void say_what_is_awaited() {
+  static bool said = false;
+  if (::isatty(STDIN_FILENO) == 0 || std::exchange(said, true)) return;
+  report::print(stderr, "rubric: reads what is typed here; Ctrl-D on a line of its own ends it\n");
+}
+
 std::size_t columns(std::size_t asked, int fd) {
   if (asked != 0) return asked;
+  const std::size_t found = screen_columns(fd);
+  return found == 0 ? kColumnsDefault : std::clamp(found, kColumnsMin, kColumnsMax);
+}
+
+std::size_t screen_columns(int fd) {
   winsize size{};
-  if (::ioctl(fd, TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return kColumnsDefault;
-  return std::min(std::max<std::size_t>(size.ws_col, kColumnsMin), kColumnsMax);
+  return ::ioctl(fd, TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
 }
 
 std::size_t rows(int fd) {

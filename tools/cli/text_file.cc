@@ -5,11 +5,13 @@
 #include <cstring>
 
 #include "codec/text/packed.h"
+#include "tools/cli/terminal.h"
 
 namespace rubric::cli {
 
 bool read_file(const std::string& path, std::string& text, std::string& error) {
   text.clear();
+  if (path == "-") say_what_is_awaited();
   std::FILE* const file = path == "-" ? stdin : std::fopen(path.c_str(), "rb");
   if (!file) {
     error = path + ": " + std::strerror(errno);
@@ -33,15 +35,6 @@ bool read_file(const std::string& path, std::string& text, std::string& error) {
     return false;
   }
   return true;
-}
-
-bool is_packed(const std::string& path) {
-  std::uint8_t first[4] = {};
-  std::FILE* const file = std::fopen(path.c_str(), "rb");
-  if (!file) return false;
-  const std::size_t size = std::fread(first, 1, sizeof first, file);
-  std::fclose(file);
-  return text::packing_of(Bytes(first, size)) != text::Packing::kNone;
 }
 
 }  // namespace rubric::cli

@@ -9,10 +9,4 @@ namespace rubric::cli {
 /// why" in `error`, if that fails.
 bool read_file(const std::string& path, std::string& text, std::string& error);
 
-/// Returns whether the file begins as gzip or zstd data.
-bool is_packed(const std::string& path);
-
-/// Returns whether the file begins as gzip or zstd data.
-bool is_packed(const std::string& path);
-
 }  // namespace rubric::cli

@@ -2,7 +2,9 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -11,6 +13,7 @@
 #include "codec/text/json.h"
 #include "codec/text/text.h"
 #include "conformance/check/input/duplicates.h"
+#include "conformance/check/input/read_trace.h"
 #include "conformance/check/judge/judge.h"
 #include "conformance/check/report/words.h"
 #include "tools/cli/color.h"
@@ -57,17 +60,38 @@ constexpr const char* kCheckFooter =
     "64 usage, 66 input cannot be read, or a source broke off and nothing failed, 74\n"
     "output cannot be written.";
 
-check::Run read_run(const CheckOptions& options) {
-  check::RunReader reader(read_as(options));
+// Adds a file to a run, as every command reads captures; a log is taken whole.
+void add_file(const CheckOptions& options, const std::string& file, check::RunReader& reader) {
+  const std::string name = file == "-" ? "stdin" : file;
+  bool is_log = false;
   std::string error;
-  for (const std::string& file : options.input.files) {
-    const bool at_once = file == "-" || cli::is_packed(file);
-    const std::string name = file == "-" ? "stdin" : file;
-    const bool good = at_once
-                          ? reader.add_bytes(name, cli::text_of_file(kCheckCommand, file), error)
-                          : reader.add_file(file, error);
-    if (!good) cli::unreadable(kCheckCommand, error);
-  }
+  const cli::OtherText logs{
+      [](Bytes beginning) {
+        return check::looks_like_trace(
+            {reinterpret_cast<const char*>(beginning.data()), beginning.size()});
+      },
+      [&](const cli::Source&, std::string text) {
+        is_log = true;
+        reader.add_bytes(name, text, error);
+      }};
+  std::optional<std::uint32_t> index;
+  const auto take = [&](const Packet& packet, const cli::Source& source) {
+    if (!index) index = reader.open(name);
+    reader.take(*index, packet, source.interface_name, source.number);
+    return true;
+  };
+  cli::InputOptions one = options.input;
+  one.files = {file};
+  one.prints = false;
+  const cli::InputResult result = cli::read_packets(one, take, {}, logs);
+  if (!error.empty()) cli::unreadable(kCheckCommand, error);
+  if (result.empty || (result.failed && !result.damaged)) cli::exit_with(cli::kExitInput);
+  if (!is_log && !index) reader.open(name);
+}
+
+check::Run read_run(const CheckOptions& options) {
+  check::RunReader reader(align_options(options));
+  for (const std::string& file : options.input.files) add_file(options, file, reader);
   return reader.finish();
 }
 
@@ -135,6 +159,7 @@ int check_each_run(const CheckOptions& options) {
                    [&](const std::string& file, std::string& members) {
                      CheckOptions one = options;
                      one.input.files = {file};
+                     one.input.progress = false;
                      check::Run run = read_run(one);
                      check::Options its = judged;
                      const check::Report found = check::judge(run, its);
@@ -229,13 +254,7 @@ void add_options(cli::Command& command, CheckOptions& options) {
       .between(0.0, 1e6);
   command.add_option("--frames", options.frames,
                      "Judge only frames A..B; N:A..B those of the Nth file, N:none none of it");
-  command
-      .add_option("--input-format", options.input.format,
-                  "Read captures as auto, hdlc (bytes of a serial line), sf (serial "
-                  "forwarder), pcap, pcapng, hex (text, from the dispatch byte on), log (the same "
-                  "among other lines) or hex-radio (text, 802.15.4 without FCS)")
-      .one_of({"auto", "hdlc", "sf", "pcap", "pcapng", "hex", "log", "hex-radio"})
-      .show_default();
+  cli::add_capture_options(command, options.input);
   command.add_flag("--verbose", options.verbose,
                    "Print also further findings of a rule and node in full; live, also notes");
   command

@@ -78,7 +78,7 @@ class Session {
       : options_(options),
         judged_(oracle_options(options)),
         expected_(expectations(options)),
-        follow_(read_as(options), judged_, horizon_of(options, judged_)),
+        follow_(align_options(options), judged_, horizon_of(options, judged_)),
         watch_(kSettleUs + judged_.skew_us + judged_.response_us.value_or(kResponseUs)),
         news_(options) {
     name_files();
@@ -120,10 +120,11 @@ class Session {
     for (const std::string& name : names_) follow_.open(name == "-" ? "stdin" : name);
   }
 
-  void take(const Packet& packet, std::size_t source, std::string_view interface_name) {
+  void take(const Packet& packet, std::size_t source, std::string_view interface_name,
+            std::uint64_t number) {
     fresh_ = true;
     const std::uint32_t file = file_of_[source];
-    if (!has_lines_ || file != 0) return follow_.take(file, packet, interface_name);
+    if (!has_lines_ || file != 0) return follow_.take(file, packet, interface_name, number);
     if (kept_) kept_->write(packet, interface_name);
     lines_.add(packet, interface_name, [this](const Packet& again, std::string_view name) {
       follow_.take(0, again, name);

@@ -146,23 +146,15 @@ report::KnownFailures expectations(const CheckOptions& options) {
   }
 }
 
-check::ReadAs read_as(const CheckOptions& options) {
-  check::ReadAs out;
-  const std::string& format = options.input.format;
-  if (format == "hdlc") out.format = InputFormat::kHdlc;
-  if (format == "sf") out.format = InputFormat::kSf;
-  if (format == "pcap") out.format = InputFormat::kPcap;
-  if (format == "pcapng") out.format = InputFormat::kPcapng;
-  if (format == "hex" || format == "hex-radio") out.format = InputFormat::kHex;
-  if (format == "log") out.format = InputFormat::kLog;
-  if (format == "hex-radio") out.hex_framing = Framing::kRadio;
-  out.align.enabled = options.align == "auto";
-  out.align.skew_us = microseconds(options.skew_ms).value_or(out.align.skew_us);
+check::AlignOptions align_options(const CheckOptions& options) {
+  check::AlignOptions out;
+  out.enabled = options.align == "auto";
+  out.skew_us = microseconds(options.skew_ms).value_or(out.skew_us);
   const trace::Statement stated = statement_of(options.stated);
   if (const std::int64_t* const ticks = find(stated, trace::ParameterId::kResponse)) {
-    out.align.response_us = machine::us_of(static_cast<machine::Ticks>(*ticks));
+    out.response_us = machine::us_of(static_cast<machine::Ticks>(*ticks));
   }
-  out.align.response_us = microseconds(options.response_ms).value_or(out.align.response_us);
+  out.response_us = microseconds(options.response_ms).value_or(out.response_us);
   return out;
 }
 
@@ -194,6 +186,8 @@ std::string command_of(const CheckOptions& options) {
   if (options.skew_ms) add("--skew", fmt::format("{}", *options.skew_ms));
   if (options.align != "auto") add("--align", options.align);
   if (options.input.format != "auto") add("--input-format", options.input.format);
+  if (options.input.fcs != "auto") add("--fcs", options.input.fcs);
+  for (const std::string& link : options.input.links) add("--link-type", link);
   return out;
 }
 

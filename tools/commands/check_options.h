@@ -55,8 +55,8 @@ report::KnownFailures expectations(const CheckOptions& options);
 /// Throws cli::UsageError if an output is one of the files that are read.
 void keep_outputs_apart(const CheckOptions& options);
 
-/// Returns the format of captures by --input-format.
-check::ReadAs read_as(const CheckOptions& options);
+/// Returns how clocks are put together.
+check::AlignOptions align_options(const CheckOptions& options);
 /// Returns whether there is a file of that name with an .rtr log in it.
 bool is_log(const std::string& name);
 

@@ -116,6 +116,7 @@ void settle_target(ConvertOptions& options) {
                                           "' has no suffix that says what to write (.pcapng, "
                                           ".pcap, .sf, .hex, .hdlc)");
   }
+  options.input.prints = options.output == "-";
   cli::keep_apart("OUT", options.output, options.input.files);
 }
 

@@ -22,6 +22,7 @@
 #include "tools/cli/input.h"
 #include "tools/cli/output.h"
 #include "tools/cli/specs.h"
+#include "tools/cli/terminal.h"
 #include "tools/cli/write_options.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/decode_threads.h"
@@ -47,6 +48,7 @@ struct DecodeOptions {
   bool hex = false;
   bool strict = false;
   bool units = false;
+  std::optional<std::size_t> width;  ///< Of text; 0: lines are as long as they are.
   cli::EachOptions each;
   cli::WriteOptions write;
 };
@@ -82,6 +84,7 @@ std::unique_ptr<format::Formatter> make_formatter(const DecodeOptions& options,
   text.color = cli::use_color(options.color, 1);
   text.hex = options.hex;
   text.units = options.units;
+  text.width = options.width.value_or(cli::screen_columns(1));
   text.fields = std::move(fields);
   return std::make_unique<format::TextFormatter>(protocol, std::move(text));
 }
@@ -349,6 +352,10 @@ void add_decode(cli::Command& app) {
   command.add_flag("--hex", options->hex, "Print a hex dump below each line of text");
   command.add_flag("--strict", options->strict, "End with 1 for noted frames, too");
   command.add_flag("--units", options->units, "Show values in their units, such as degrees C");
+  command
+      .add_option("--width", options->width,
+                  "Wrap text at this many columns, 0: nowhere (default: the terminal's, else 0)")
+      .check(cli::whole_number);
   cli::add_write_options(command, options->write, "Keep all frames in this pcapng file as well",
                          true);
   cli::add_each_options(command, options->each);

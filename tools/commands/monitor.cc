@@ -138,7 +138,7 @@ class LiveCheck {
  public:
   explicit LiveCheck(const CheckOptions& options)
       : judged_(oracle_options(options)),
-        follow_(read_as(options), judged_, check::horizon_us(judged_)),
+        follow_(align_options(options), judged_, check::horizon_us(judged_)),
         watch_(kMonitorSettleUs) {
     for (const std::string& name : options.input.files) follow_.open(name);
   }
@@ -219,9 +219,8 @@ class Monitor {
       }
     } else {
       cli::InputThreads input(input_);
-      const auto take = [this](const Packet& packet, std::size_t source, std::string_view name) {
-        see(packet, source, name);
-      };
+      const auto take = [this](const Packet& packet, std::size_t source, std::string_view name,
+                               std::uint64_t) { see(packet, source, name); };
       while (input.take(steady_clock::now() + kMonitorTick, take)) {
         step(screen);
         if (!screen.open()) lines::request_stop();

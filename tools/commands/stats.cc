@@ -52,6 +52,7 @@ int run_stats(const StatsOptions& options) {
 
 void add_stats(cli::Command& app) {
   auto options = std::make_shared<StatsOptions>();
+  options->input.prints = false;
   cli::Command& sub = app.add_subcommand(
       "stats", "Count frames by message, addresses and fault; find rates, gaps and repetitions");
   sub.footer(kStatsFooter);

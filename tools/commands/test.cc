@@ -226,7 +226,7 @@ suite::SuiteRun work(const TestOptions& options, const suite::Cases& cases, suit
   attached.stated = all.stated;
   attached.app = options.app;
   const std::size_t worked = plan.cases.size() * plan.repeats;
-  cli::Progress progress(worked * options.targets.size(), true, cli::Progress::Unit::kCases);
+  cli::Progress progress(worked * options.targets.size(), true, true, cli::Progress::Unit::kCases);
   for (const std::string& target : options.targets) {
     const auto make = [&] { return targets::attach(target, attached); };
     suite::Watcher watcher;

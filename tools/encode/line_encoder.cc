@@ -13,6 +13,7 @@
 #include "codec/reflect/encode_number.h"
 #include "codec/reflect/registry.h"
 #include "codec/text/text.h"
+#include "tools/cli/terminal.h"
 #include "tools/encode/carriers.h"
 #include "tools/encode/members.h"
 
@@ -125,6 +126,7 @@ bool EncodedLines::all() {
   for (const std::string& name : files_) {
     if (ended_) break;
     file_ = name == "-" ? "stdin" : name;
+    if (name == "-") cli::say_what_is_awaited();
     try {
       Lines lines(name, before_read_);
       encode_next(lines);

@@ -476,6 +476,39 @@ void end_line(Buffer& out) {
   out.append('\n');
 }
 
+// Breaks the lines from `start` on at blanks, so that they fit so many columns. Escape sequences
+// take no column, and a character of UTF-8 takes one.
+void wrap(Buffer& out, std::size_t start, std::size_t width) {
+  constexpr std::string_view kGoesOn = "          ";
+  constexpr std::size_t kNowhere = std::string::npos;
+  const std::string text(out.view().substr(start));
+  std::string wrapped;
+  std::size_t column = 0;
+  std::size_t blank = kNowhere;  // The last place in `wrapped` where its last line may be broken.
+  std::size_t after_blank = 0;   // The columns after it.
+  bool escape = false;
+  for (const char c : text) {
+    wrapped += c;
+    escape = escape || c == '\033';
+    const bool shown = !escape && (static_cast<unsigned char>(c) & 0xC0) != 0x80;
+    escape = escape && c != 'm';
+    column = c == '\n' ? 0 : column + shown;
+    after_blank += shown;
+    if (c == '\n') blank = kNowhere;
+    if (c == ' ' && shown && column > kGoesOn.size()) {
+      blank = wrapped.size() - 1;
+      after_blank = 0;
+    }
+    if (column <= width || blank == kNowhere || c == ' ') continue;
+    const std::size_t end = wrapped.find_last_not_of(' ', blank) + 1;
+    wrapped.replace(end, blank + 1 - end, "\n" + std::string(kGoesOn));
+    column = kGoesOn.size() + after_blank;
+    blank = kNowhere;
+  }
+  out.shrink(start);
+  out.append(wrapped);
+}
+
 }  // namespace
 
 TextFormatter::TextFormatter(const reflect::Protocol& protocol, TextOptions options)
@@ -483,6 +516,7 @@ TextFormatter::TextFormatter(const reflect::Protocol& protocol, TextOptions opti
 
 void TextFormatter::print(const Record& record, Buffer& out) {
   Styled styled(out, options_.color);
+  const std::size_t start = out.size();
   const Frame& frame = *record.frame;
   const bool malformed = frame.malformed();
   styled.put(malformed ? Style::kError : Style::kDim,
@@ -519,6 +553,7 @@ void TextFormatter::print(const Record& record, Buffer& out) {
   append_error(record, styled);
   end_line(out);
   append_rule(record, styled);
+  if (options_.width != 0) wrap(out, start, options_.width);
   if (options_.hex) append_hexdump(record, options_.color, out);
 }
 

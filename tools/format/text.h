@@ -1,6 +1,7 @@
 // Prints a line a frame for people to read.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "tools/format/json_nodes.h"
@@ -14,6 +15,7 @@ struct TextOptions {
   bool color = false;
   bool hex = false;          ///< A hex dump below each line.
   bool units = false;        ///< Values with a unit are shown converted.
+  std::size_t width = 0;     ///< Lines go on below after so many columns; 0: never.
   std::vector<Path> fields;  ///< Only these, where there are any.
 };
 

@@ -33,6 +33,26 @@ TEST(Text, is_a_line_a_frame) {
             "updates=[light:302 temp:6402 humid:1202] +2 stale\n");
 }
 
+TEST(Text, goes_on_below_where_a_line_is_too_long) {
+  TextOptions narrow;
+  narrow.width = 60;
+  const Sample join(kJoinRequest, Framing::kBare, "join_request");
+  const std::string plain = printed(join, narrow);
+  EXPECT_EQ(plain,
+            "     1 bare   join_request            seq_num=50421\n"
+            "          mote_desc{mote_type=telosb_demo\n"
+            "          transducers=light|temp|humid|bit13 actuators=led}\n");
+  narrow.color = true;
+  std::string colored = printed(join, narrow);
+  for (std::size_t at; (at = colored.find('\033')) != std::string::npos;) {
+    colored.erase(at, colored.find('m', at) + 1 - at);
+  }
+  EXPECT_EQ(colored, plain);
+  narrow.color = false;
+  narrow.width = 20;  // Words stay whole.
+  EXPECT_THAT(printed(join, narrow), HasSubstr("\n          transducers=light|temp|humid|bit13\n"));
+}
+
 TEST(Text, shows_structures_masks_and_units) {
   const std::string join = printed(Sample(kJoinRequest, Framing::kBare, "join_request"));
   EXPECT_EQ(join,

@@ -346,7 +346,7 @@ class Inputs(Folder):
             (self.folder / "none.pcapng", "No such file or directory"),
             (self.folder, "Is a directory"),
             (self.write("empty", b""), "empty"),
-            (self.write("garbage", bytes(range(128, 256)) * 9), "not a capture"),
+            (self.write("garbage", bytes(range(128, 256)) * 9), "begins like no serial line"),
         ]:
             code, out, err = check(path)
             self.assertEqual((code, out), (66, ""), path)

@@ -6,12 +6,15 @@ Usage: cli_test.py RUBRIC.
 
 import csv
 import datetime
+import fcntl
 import io
 import json
 import os
 import pty
+import struct
 import subprocess
 import tempfile
+import termios
 import unittest
 
 from testing import FIRMWARE, RUBRIC, run
@@ -247,8 +250,31 @@ class Terminals(unittest.TestCase):
         self.assertNotIn(b"\033", self.on_terminal({"TERM": "dumb"}))
         self.assertNotIn(b"\033", self.on_terminal({"TERM": "xterm"}, "--color", "never"))
 
-    def on_terminal(self, env, *words):
+    def test_lines_fit_the_terminal(self):
+        for width in (60, 100):
+            shown = self.on_terminal({"TERM": "dumb"}, width=width).decode().splitlines()
+            self.assertGreater(len(shown), 1)
+            self.assertLessEqual(max(map(len, shown)), width)
+            self.assertEqual(" ".join(" ".join(shown).split()),
+                             " ".join(lines(decode(JOIN, "--count", "1"))[0].split()))
+        wide = self.on_terminal({"TERM": "dumb"}, "--width", "0", width=60)
+        self.assertEqual(wide.count(b"\n"), 1)
+        self.assertEqual(len(lines(decode(JOIN, "--count", "1", "--width", "60"))), 3)
+
+    def test_who_reads_a_terminal_says_so(self):
+        for words in (["decode"], ["stats"], ["encode"], ["convert", "--format", "hex"],
+                      ["check", "-"], ["check", JOIN, "--expect", "-"]):
+            leader, follower = pty.openpty()
+            with subprocess.Popen([RUBRIC, *words], stdin=follower, stdout=subprocess.DEVNULL,
+                                  stderr=subprocess.PIPE) as process:
+                self.assertIn(b"reads what is typed here", process.stderr.readline(), words)
+                process.kill()
+            os.close(follower)
+            os.close(leader)
+
+    def on_terminal(self, env, *words, width=0):
         leader, follower = pty.openpty()
+        fcntl.ioctl(follower, termios.TIOCSWINSZ, struct.pack("HHHH", 24, width, 0, 0))
         environment = {k: v for k, v in os.environ.items() if k != "NO_COLOR"} | env
         subprocess.run([RUBRIC, "decode", str(JOIN), "--count", "1", *words], stdout=follower,
                        stdin=subprocess.DEVNULL, check=True, env=environment)

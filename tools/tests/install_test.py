@@ -5,17 +5,24 @@ against them, by CMake and by pkg-config, after the folder was moved as well.
 Usage: install_test.py BUILD_FOLDER.
 """
 
+import concurrent.futures
+import contextlib
 import json
 import os
 import pathlib
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
 import unittest
 
 BUILD = ""
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+EXAMPLE_SECONDS = 3  # Lines, stations and large explorations go on until somebody ends them.
+TOO_LONG = -1
+ISLANDS = "islands:\n  - island: 11\n    radio: zep:0\n    motes:\n      - {id: 5, app: demo}\n"
 CODEC = """
 #include <cstdio>
 #include "codec/generated/rubicon/join_reply.h"
@@ -54,6 +61,19 @@ add_executable(consumer main.cc)
 target_link_libraries(consumer PRIVATE rubric::{part})
 target_compile_options(consumer PRIVATE -Werror)
 """
+
+
+def examples_of(text):
+    """The lines below Examples: of a command's help, whole and without comments."""
+    found = re.search(r"^Examples:\n((?:  .*\n)+)", text, re.M)
+    out = []
+    for line in found[1].splitlines() if found else ():
+        line = re.sub(r"\s{2,}#.*", "", line).strip()
+        if out and out[-1].endswith("|"):
+            out[-1] += " " + line
+        else:
+            out.append(line)
+    return out
 
 
 def run(*words, **more):
@@ -169,15 +189,128 @@ class Install(unittest.TestCase):
             self.assertGreater((share / path).stat().st_size, 1000, path)
         self.wireshark(rubric)
 
+    def commands(self):
+        """Every command and its help."""
+        rubric = self.prefix / "bin/rubric"
+        listed = run(rubric, "--help").split("Subcommands:")[1].split("\n\n")[0]
+        names = [row.split()[0] for row in listed.splitlines() if re.match(r"  \S", row)]
+        return {name: run(rubric, name, "--help") for name in names}
+
+    def test_every_example_runs_in_an_empty_folder(self):
+        """With the files that it names beside it, and nothing of the project."""
+        found = [(command, example) for command, text in self.commands().items()
+                 for example in examples_of(text)]
+        self.assertGreater(len(found), 45)
+
+        def attempt(one):
+            with tempfile.TemporaryDirectory(dir=self.base) as folder:
+                self.lay_down(one[1], pathlib.Path(folder), one[0])
+                return self.attempt(one[1], folder)
+
+        with concurrent.futures.ThreadPoolExecutor(4) as pool:  # Most of them wait for something.
+            results = list(pool.map(attempt, found))
+        for (_, example), (code, err) in zip(found, results):
+            with self.subTest(example):
+                # Mistakes of the command line, broken tools, output that is not written.
+                self.assertNotIn(code, (2, 64, 74, 126, 127), err)
+                if not re.search(r"@|mqtt:|zep:|sf-server:", example):
+                    self.assertIn(code, (0, 1, 3, TOO_LONG), err)
+
+    def lay_down(self, example, folder, command):
+        """The files that the example reads."""
+        tools = folder / ".tools"
+        tools.mkdir()
+        (tools / "sudo").write_text("#!/bin/sh\nexit 0\n", encoding="utf-8")
+        (tools / "sudo").chmod(0o755)
+        for name in (".local/share/bash-completion/completions", ".zfunc",
+                     ".config/fish/completions"):
+            (folder / name).mkdir(parents=True)
+        firmware = ROOT / "spec/captures/firmware"
+        files = {"capture.pcapng": firmware / "b_reliable.pcapng",
+                 "sniffer.pcapng": firmware / "b_reliable.pcapng",
+                 "mote.serial.bin": firmware / "b_reliable.serial.bin",
+                 "sink.serial.bin": firmware / "b_reliable.serial.bin",
+                 "app.rtr": ROOT / "conformance/check/test/testdata/b_reliable.app.rtr",
+                 "j4.rtr": ROOT / "conformance/cases/j4.rtr",
+                 "small.rtr": ROOT / "conformance/cases/j4.rtr",
+                 "no_fail.rtr": ROOT / "conformance/cases/j4.rtr",
+                 "captures/one.pcapng": firmware / "b_reliable.pcapng"}
+        for name, source in files.items():
+            if name in example or name.startswith("captures/") and "captures/" in example:
+                (folder / name).parent.mkdir(exist_ok=True)
+                shutil.copy(source, folder / name)
+        rubric = self.prefix / "bin/rubric"
+        if "sniffer.pcap " in example:
+            run(rubric, "convert", firmware / "b_reliable.pcapng", "--only", "radio", "-o",
+                folder / "sniffer.pcap")
+        if command == "send" and "run.pcapng" in example:
+            shutil.copy(firmware / "b_reliable.pcapng", folder / "run.pcapng")
+        (folder / "commands.jsonl").write_text('{"type":10,"value":12}\n', encoding="utf-8")
+        if "islands.yaml" in example:
+            (folder / "islands.yaml").write_text(ISLANDS, encoding="utf-8")
+        if "my_traces.rtr" in example:
+            text = (ROOT / "conformance/cases/j4.rtr").read_text(encoding="utf-8")
+            (folder / "my_traces.rtr").write_text(text.replace("case j4.wrong_seq", "case mine"),
+                                                  encoding="utf-8")
+        for name in re.findall(r"crash-\w+", example):
+            (folder / name).write_bytes(bytes(range(200)))
+        if re.search(r"\./|mote\.py", example):
+            run(rubric, "new-adapter", "python", "--out", folder)
+            for name in ("my_adapter", "a", "b", "old_mote", "new_mote"):
+                (folder / name).write_text("#!/bin/sh\nexec python3 adapter.py\n", encoding="utf-8")
+                (folder / name).chmod(0o755)
+            with open(folder / "mote.py", "a", encoding="utf-8") as file:
+                file.write("\nif __name__ == '__main__':\n    import runpy\n"
+                           "    runpy.run_path('adapter.py', run_name='__main__')\n")
+        elif "known.yaml" in example:
+            (folder / "known.yaml").write_text("[]\n", encoding="utf-8")
+
+    def attempt(self, example, folder):
+        environment = {"PATH": f"{folder}/.tools:{self.prefix}/bin:{os.environ['PATH']}",
+                       "HOME": folder, "LC_ALL": "C.UTF-8"}
+        process = subprocess.Popen(["bash", "-o", "pipefail", "-c", example], cwd=folder,
+                                   env=environment, stdin=subprocess.DEVNULL,
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
+                                   start_new_session=True)
+        try:
+            err = process.communicate(timeout=EXAMPLE_SECONDS)[1]
+            return process.returncode, err
+        except subprocess.TimeoutExpired:
+            return TOO_LONG, ""
+        finally:
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(process.pid, signal.SIGKILL)
+            process.communicate()
+
+    def test_programs_know_no_folder_of_the_project(self):
+        for name in ("rubric", "rubricc", "rubric-extcap"):
+            self.assertNotIn(os.fsencode(str(ROOT)), (self.prefix / "bin" / name).read_bytes())
+
+    def test_the_compiler_of_specs(self):
+        """It needs no file of the project: rules, profiles and imports are installed."""
+        folder = self.base / "spec"
+        folder.mkdir()
+        text = (ROOT / "spec/wire/oscilloscope.ksy").read_text(encoding="utf-8")
+        (folder / "mine.ksy").write_text(text.replace("id: oscilloscope\n", "id: mine\n"),
+                                         encoding="utf-8")
+        rubricc = self.prefix / "bin/rubricc"
+        run(rubricc, "--check", "mine.ksy", cwd=folder)
+        run(rubricc, "--emit", "cpp,tables,lua", "--out", "out", "mine.ksy", cwd=folder)
+        header = folder / "out/codec/generated/mine/oscilloscope_msg.h"
+        self.assertIn("OscilloscopeMsgView", header.read_text(encoding="utf-8"))
+
+    def test_the_readme_has_no_dead_links(self):
+        text = next(self.prefix.glob("**/doc/rubric/README.md")).read_text(encoding="utf-8")
+        self.assertNotIn("](", text)
+        self.assertIn("## Folders", text)
+
     def test_manual_pages(self):
         pages = self.prefix / "share/man/man1"
-        commands = [row.split()[0] for row in run(self.prefix / "bin/rubric", "--help")
-                    .split("Subcommands:")[1].split("\n\n")[0].splitlines()
-                    if re.match(r"  \S", row)]
+        commands = self.commands()
         self.assertGreater(len(commands), 10)
         programs = ["rubric", "rubricc", "rubric-extcap"]
         for name in programs + ["rubric-" + command for command in commands]:
-            page = pages / f"{name}.1"
+            page = pages / f"{name}.1.gz"
             done = subprocess.run(["man", "--warnings", "-l", str(page)], capture_output=True,
                                   text=True, check=True, env={**os.environ, "MANPAGER": "cat"})
             self.assertEqual(done.stderr, "", name)
@@ -191,6 +324,10 @@ class Install(unittest.TestCase):
         self.assertEqual(names, ["librubric-dev", "rubric"])
         self.assertRegex(run("dpkg-deb", "--field", found[1], "Depends"), r"libfmt\d")
         self.assertNotIn(";", run("dpkg-deb", "--field", found[1], "Description"))
+        if shutil.which("lintian"):
+            done = subprocess.run(["lintian", "--fail-on", "error", *map(str, found)],
+                                  capture_output=True, text=True, check=False)
+            self.assertEqual(done.returncode, 0, done.stdout)
         root = self.base / "root"
         for path in found:
             run("dpkg-deb", "--extract", path, root)

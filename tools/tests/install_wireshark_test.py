@@ -175,7 +175,7 @@ class Install(Base):
         for _ in range(2):
             said = self.install()
             self.assertIn(f"wrote {lua}/rubric.lua\n", said)
-            self.assertEqual(len(self.tree()), 2)
+            self.assertEqual(len(self.tree()), 3)
         self.assertEqual(pathlib.Path(lua, "rubric.lua").read_bytes(),
                          (Given.root / "tools/wireshark/generated/rubric.lua").read_bytes())
         link = next(self.home.rglob("rubric-extcap"))
@@ -183,6 +183,36 @@ class Install(Base):
         self.assertIn("removed", self.install("--remove"))
         self.assertEqual(self.tree(), [])
         self.assertIn("not there", self.install("--remove"))
+
+    def rules_of(self, capture):
+        """The colouring rule of each packet."""
+        done = run("tshark", "--color", "-r", capture, "-T", "fields", "-e",
+                   "frame.coloring_rule.name", env=self.environment)
+        self.assertNotIn("olor filter", done.stderr)
+        return [line.removeprefix("Rubric: ") for line in done.stdout.splitlines()]
+
+    def test_colouring_rules(self):
+        """Faults, remarkable frames and acknowledgements have rules; Wireshark's and the user's
+        stay."""
+        capture = Given.root / "spec/captures/firmware/h4_stale_bytes.pcapng"
+        self.install()
+        rules = self.rules_of(capture)
+        self.assertEqual([i + 1 for i, name in enumerate(rules)
+                          if name == "a rule of the wire is broken"], [14, 16])
+        self.assertEqual([rules[i - 1] for i in (3, 4, 10)],
+                         ["acknowledgement", "acknowledgement", "remarkable"])
+        path = next(self.home.rglob("colorfilters"))
+        shipped = path.read_text(encoding="utf-8").split("\n", 3)[3]
+        self.assertIn("@Bad TCP@", shipped)
+        mine = "@mine@rubric@[65535,0,0][0,0,0]\n"
+        path.write_text(path.read_text(encoding="utf-8").replace("@Rubric: rem", "!@Rubric: rem")
+                        + mine, encoding="utf-8")
+        self.install()
+        self.assertEqual(path.read_text(encoding="utf-8").count("@Rubric: "), 3)
+        self.assertIn("left alone", self.install())
+        self.install("--remove")
+        self.assertEqual(path.read_text(encoding="utf-8"), shipped + mine)
+        self.assertIn("left alone", self.install("--remove"))
 
     def test_without_tshark(self):
         """Wiresharks since 4.2 look beside the plug-ins, older ones beside the configuration."""

@@ -143,6 +143,7 @@ CAPTURES = {
     "vlan_zep1.pcap": pcap(1, some(lambda n: ethernet(ipv4(udp(zep(n, 1)))))),
     "raw_ipv6_zep.pcap": pcap(101, some(lambda n: ipv6(udp(zep(n))))),
     "short.pcap": pcap(195, some(with_fcs), snaplen=12),
+    "ppi.pcap": pcap(192, some(lambda n: struct.pack("<BBHI", 0, 0, 8, 195) + with_fcs(n))),
     "with_wifi.pcapng": pcapng([230, 127], [(n % 2, WIFI if n % 2 else frame(n))
                                             for n in range(60)]),
     "packed.pcap.gz": gzip.compress(pcap(195, some(with_fcs))),
@@ -310,6 +311,77 @@ class Mixed(unittest.TestCase):
                          rubric("check", self.path / "dongle.pcap")[0])
 
 
+class Check(unittest.TestCase):
+    """`rubric check` reads what decode reads: of any sniffer the same frames, the same verdict."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.folder.cleanup)
+        cls.path = pathlib.Path(cls.folder.name)
+        source = "spec/captures/firmware/g2_stray_reply_while_joining.pcapng"
+        text = rubric("decode", "--format", "jsonl", "--filter", 'framing=="radio"', source)[1]
+        # Eight frames of another PAN and no protocol, by which trailers are recognised.
+        others = [(struct.pack("<HBHHHBB", 0x8841, n, 0x77, 0x501, 0x502, 0x3F, 250), n)
+                  for n in range(8)]
+        cls.frames = others + [(bytes.fromhex(one["raw"]), round(one["time"] * 1000) + 8)
+                               for one in map(json.loads, text.splitlines())]
+
+    def capture(self, name, link_type, make):
+        records = b""
+        for frame, time_ms in self.frames:
+            record = make(frame)
+            records += struct.pack("<IIII", time_ms // 1000, time_ms % 1000 * 1000, len(record),
+                                   len(record)) + record
+        (self.path / name).write_bytes(struct.pack("<IHHIIII", 0xA1B2C3D4, 2, 4, 0, 0, 65535,
+                                                   link_type) + records)
+        return name
+
+    def text(self, name, make, noise=""):
+        lines = [make(frame, time_ms) for frame, time_ms in self.frames]
+        (self.path / name).write_text(noise + "\n".join(lines) + "\n", encoding="utf-8")
+        return name
+
+    def findings(self, name, *args):
+        code, out, err = rubric("check", "--format", "json", *args, self.path / name)
+        report = json.loads(out)
+        return code, [(one["requirement"], one["node"], one["severity"]) for one in
+                      report["findings"]], report["counts"]["frames"], err
+
+    def test_the_same_verdict_from_any_sniffer(self):
+        wanted = self.findings(self.capture("plain.pcap", 230, lambda frame: frame))
+        self.assertEqual(wanted[0], 1)
+        self.assertIn("J4-SEQ", [finding[0] for finding in wanted[1]])
+        whole = [
+            (self.capture("chip.pcap", 195, lambda frame: frame + b"\xd0\xe8"), ()),
+            (self.capture("ppi.pcap", 192,
+                          lambda frame: b"\0\0\x08\0\xe6\0\0\0" + frame), ()),
+            (self.capture("user.pcap", 150, lambda frame: frame), ("--link-type", "150=radio")),
+            (self.text("nordic.log", lambda frame, ms: f"received: {frame.hex()}0000 power: -40 "
+                       f"lqi: 90 time: {ms}000", "> channel 26\n"), ()),
+            (self.text("cooja.txt", lambda frame, ms: f"{ms}\t1\t2\t{len(frame)}: "
+                       f"0x{frame.hex(' ', -4)}"), ()),
+        ]
+        for name, args in whole:
+            got = self.findings(name, *args)
+            self.assertEqual(got[:3], wanted[:3], (name, got[3]))
+        # Without stamps nothing says what came in time.
+        name = self.text("bare.txt", lambda frame, ms: (frame + fcs(frame)).hex(), "sniffing\n")
+        code, _, frames, err = self.findings(name)
+        self.assertEqual((code, frames), (1, wanted[2]))
+        self.assertIn("its lines are radio frames with their FCS", err)
+
+    def test_what_is_not_read_is_no_verdict(self):
+        name = self.capture("user.pcap", 150, lambda frame: frame)
+        code, out, err = rubric("check", self.path / name)
+        self.assertEqual((code, out), (NO_INPUT, ""))
+        self.assertIn("--link-type 150=radio-fcs", err)
+        code, out, _ = rubric("check", "--fcs", "crc", self.path / self.capture(
+            "chip.pcap", 195, lambda frame: frame + b"\xd0\xe8"))
+        self.assertNotIn("J4-SEQ", out)
+        self.assertEqual(code, 3)
+
+
 class Text(unittest.TestCase):
     BLINK = "00 FF FF 00 00 04 22 06 00 02 00 01"
     # Flags around, the CRC's bytes as a mote sends them.
@@ -348,6 +420,42 @@ class Text(unittest.TestCase):
         self.assertEqual(rubric("check", "-", stdin=self.SERIAL.encode())[0],
                          rubric("check", "-", stdin=self.BLINK.encode())[0])
 
+    def test_sniffers_that_print(self):
+        sound = [frame(number) for number in range(9)]
+        logs = {
+            "nordic": "".join(f"received: {one.hex()}0000 power: -{50 + i} lqi: {i} time: {i}000\n"
+                              for i, one in enumerate(sound)),
+            "zephyr": "uart:~$ \n" + "".join(f"psdu: {one.hex()} power: -{50 + i} lqi: {i} time: "
+                                             f"{i}000\n" for i, one in enumerate(sound)),
+            "cooja": "".join(f"{i}\t1\t2,3\t{len(one) + 2}: 0x{(one + fcs(one)).hex(' ', -4)}\n"
+                             for i, one in enumerate(sound)),
+            "arduino": "Starting capture\n" + "".join(f"{(one + fcs(one)).hex()}\n"
+                                                      for one in sound),
+        }
+        for name, text in logs.items():
+            code, out, err = rubric("decode", "--format", "jsonl", stdin=text.encode())
+            self.assertEqual(code, 0, (name, err))
+            frames = [json.loads(line) for line in out.splitlines()]
+            self.assertEqual([one["raw"] for one in frames], [one.hex() for one in sound], name)
+            self.assertEqual({one["message"] for one in frames}, {"blink_to_radio_msg"}, name)
+            if name != "arduino":
+                self.assertEqual([one["time"] for one in frames], [i / 1000 for i in range(9)])
+            if name in ("nordic", "zephyr"):
+                self.assertEqual([one["frame"]["rssi"] for one in frames],
+                                 [-50 - i for i in range(9)])
+
+    def test_what_a_printf_client_prints_is_no_packet(self):
+        log = f"{self.BLINK}\nHere is a uint8: 123\n12\ndead beef\nadd 5 motes\n{self.BLINK}\n"
+        code, out, err = self.decoded(log, "--format", "jsonl")
+        self.assertEqual((code, len(out.splitlines())), (0, 2), err)
+        self.assertIn("4 of its lines hold no packet; the first is line 2", err)
+
+    def test_a_hex_dump_is_refused_with_the_way_out(self):
+        dump = "".join(f"0000  {frame(number).hex(' ')}\n" for number in range(3))
+        code, out, err = rubric("decode", stdin=dump.encode())
+        self.assertEqual((code, out), (NO_INPUT, ""))
+        self.assertIn("text2pcap -l 195", err)
+
     def test_radio_frames_as_text(self):
         for kind, make in (("crc", with_fcs), ("cc24xx", trailer)):
             text = "\n".join(make(number).hex() for number in range(9))
@@ -358,6 +466,12 @@ class Text(unittest.TestCase):
 
 
 class Specs(unittest.TestCase):
+    def test_it_is_chosen_for_frames_with_trailers(self):
+        capture = pcap(195, some(trailer))
+        code, out, err = rubric("decode", "--format", "jsonl", stdin=capture)
+        self.assertEqual((code, json.loads(out.splitlines()[0])["message"]),
+                         (0, "blink_to_radio_msg"), err)
+
     def test_the_spec_that_fits_is_chosen(self):
         text = Text.BLINK.encode()
         code, out, err = rubric("decode", "--format", "jsonl", stdin=text)

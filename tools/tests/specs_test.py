@@ -314,6 +314,12 @@ class File(Folder):
         dissector = (self.folder / "plugins/rubric.lua").read_text(encoding="utf-8")
         for name in ("rubicon", "oscilloscope", "blink_to_radio", "ctp", "my_blink"):
             self.assertIn(f'name = "{name}"', dissector)
+        names = re.findall(r'^  \{name = "(\w+)", carriers', dissector, re.M)
+        usual = int(re.search(r"usual_protocol = (\d+)", dissector)[1])
+        self.assertEqual(names[usual - 1], "my_blink")
+        done = rubric("install-wireshark", "--dir", str(self.folder), "--spec", self.file(PLAIN))
+        self.assertEqual(done.returncode, 66)
+        self.assertIn("no packet leads to its messages", done.stderr)
 
 
 if __name__ == "__main__":

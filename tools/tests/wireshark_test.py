@@ -265,6 +265,42 @@ class Dissector(unittest.TestCase):
     def count(self, *arguments, path=FIRMWARE / "a_join_data.pcapng"):
         return len(tshark(ROOT / path, *arguments).splitlines())
 
+    def shown(self, path):
+        """From `rubric decode`: messages and fields of each packet; None where there is none."""
+        text = run(RUBRIC, "decode", path, "--color", "never", "--time", "none").stdout.decode()
+        records = run(RUBRIC, "decode", path, "--format", "jsonl").stdout.splitlines()
+        lines = [line for line in text.splitlines() if not line.startswith("        ")]
+        for line, record in zip(lines, map(json.loads, records), strict=True):
+            messages = "/".join(record["path"])
+            if record["message"] == "mac_ack" or not messages:
+                yield None
+                continue
+            fields = line[line.index(messages):]
+            yield re.sub(" +", " ", re.split(r" \+\d+ stale| \* | !! ", fields + " ")[0]).strip()
+
+    def test_info_and_addresses(self):
+        """Info says what `rubric decode` says; source and destination are those of the message."""
+        compared = 0
+        for name in ("a_join_data", "b_reliable", "h10_hdlc_escape_and_bad_serial",
+                     "h4_stale_bytes"):
+            path = ROOT / FIRMWARE / f"{name}.pcapng"
+            columns = [word for one in ("Source", "Destination", "Info")
+                       for word in ("-e", f"_ws.col.{one}")]
+            found = tshark(path, "-T", "fields", *columns).decode().splitlines()
+            records = map(json.loads, run(RUBRIC, "decode", path, "--format", "jsonl")
+                          .stdout.splitlines())
+            for line, wanted, record in zip(found, self.shown(path), records, strict=True):
+                source, destination, info = line.split("\t")
+                if wanted is None:
+                    continue
+                self.assertEqual(info.split(" !! ")[0], wanted)
+                am = record["am"]
+                self.assertEqual((source, destination), tuple(
+                    "Broadcast" if one == 0xffff else f"0x{one:04x}"
+                    for one in (am["src"], am["dest"])))
+                compared += 1
+        self.assertGreater(compared, 150)
+
     def test_names_for_filters(self):
         self.assertEqual(self.count("-Y", "rubric.join_request"), 3)
         self.assertEqual(self.count("-Y", "rubric.join_request.mote_desc.transducers.temp == 1"), 3)

@@ -66,13 +66,15 @@ bool is_before_4_2(const std::string& version_text) {
 
 }  // namespace
 
-Folders folders_in(const fs::path& base) { return {base / "plugins", base / "extcap"}; }
+Folders folders_in(const fs::path& base) { return {base / "plugins", base / "extcap", {}, {}}; }
 
 Folders personal_folders() {
   const std::string said = output_of("tshark -G folders 2>/dev/null");
-  Folders out{line_of(said, "Personal Lua Plugins"), line_of(said, "Personal Extcap path")};
+  Folders out{line_of(said, "Personal Lua Plugins"), line_of(said, "Personal Extcap path"), {}, {}};
   const std::string config = line_of(said, "Personal configuration");
   if (out.extcap.empty() && !config.empty()) out.extcap = fs::path(config) / "extcap";
+  out.config = config;
+  out.shipped_config = line_of(said, "Global configuration");
   if (!out.plugins.empty() && !out.extcap.empty()) return out;
 
   out = folders_in(home() / ".local/lib/wireshark");

@@ -9,6 +9,8 @@ namespace rubric::wireshark {
 struct Folders {
   std::filesystem::path plugins;  ///< For dissectors in Lua.
   std::filesystem::path extcap;   ///< For programs that capture.
+  std::filesystem::path config;   ///< The user's settings; empty: unknown, or not one user's.
+  std::filesystem::path shipped_config;  ///< Those that ship with Wireshark; empty: unknown.
 };
 
 /// Returns tshark's answer; without tshark, the default of the installed Wireshark, or else of the

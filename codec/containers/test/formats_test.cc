@@ -1,6 +1,9 @@
 // Serial forwarder streams, radio records, hex text, detection.
 #include <gtest/gtest.h>
 
+#include <iterator>
+#include <optional>
+
 #include "codec/containers/capture_time.h"
 #include "codec/containers/hex_reader.h"
 #include "codec/containers/link_record.h"
@@ -131,6 +134,121 @@ TEST(WireHex, OtherFramings) {
   EXPECT_EQ(radio[0].packet.fcs, 0xa431);
   EXPECT_EQ(radio[0].packet.error, kSound);
   EXPECT_EQ(radio[1].packet.error, (Error{Fault::kFcs, 3, "WIRE-RADIO-FCS"_rule}));
+}
+
+struct RadioText {
+  const char* line;
+  const char* bytes;  // Null: the line is passed over.
+  std::int64_t time_ms;
+  std::optional<float> rssi = {};
+  std::int16_t lqi = kAbsent;
+  Error error = kSound;
+};
+const RadioText kRadioTexts[] = {
+    {"received: 0200010000 power: -44 lqi: 220 time: 1500000", "020001", 1500, -44, 220},
+    {"\t psdu: 020001 power: -32768 lqi: 0 time: 7000\r", "020001", 7, {}, 0},
+    {"1000\t1\t-\t5: 0x02000131 A4", "020001", 1000},
+    {"1000\t1\t2,3\t3: 0x020001", "020001", 1000},
+    {"1000\t1\t2,3\t 15: 15.4 D 01:00|020001", nullptr, 0},
+    {"received: 0000 power: -44 lqi: 220 time: 1", nullptr, 0},
+    {"received: 02000 power: -44 lqi: 220 time: 1", nullptr, 0},
+    {"received: 020001 power: -44 lqi: 256 time: 1", nullptr, 0},
+    {"received: 020001 power: -44 lqi: 2 time: -1", nullptr, 0},
+    {"psdu: 020001 power: -44 lqi: 220", nullptr, 0},
+};
+
+TEST(WireHex, WhatSniffersAndSimulatorsPrint) {
+  std::string log = "booted\n";
+  for (const RadioText& row : kRadioTexts) log += std::string(row.line) + "\n";
+  EXPECT_EQ(detect(view(log)), InputFormat::kLog);
+  const auto reader = make_reader(InputFormat::kLog);
+  const std::vector<Kept> got = read_all(*reader, view(log));
+  std::size_t at = 0;
+  for (std::size_t i = 0; i < std::size(kRadioTexts); ++i) {
+    const RadioText& row = kRadioTexts[i];
+    if (row.bytes == nullptr) continue;
+    ASSERT_LT(at, got.size()) << row.line;
+    const Kept& one = got[at++];
+    EXPECT_EQ(one.packet.framing, Framing::kRadio) << row.line;
+    EXPECT_EQ(to_hex(view(one.bytes)), row.bytes) << row.line;
+    EXPECT_EQ(one.packet.time_ns, row.time_ms * 1'000'000) << row.line;
+    EXPECT_EQ(one.packet.radio.rssi, row.rssi) << row.line;
+    EXPECT_EQ(one.packet.radio.lqi, row.lqi) << row.line;
+    EXPECT_EQ(one.packet.error, row.error) << row.line;
+    EXPECT_EQ(one.packet.line, i + 2) << row.line;
+  }
+  EXPECT_EQ(at, got.size());
+  EXPECT_EQ(reader->noise().lines, 7u);
+  // A size that is not that of the bytes is a mistake, not another line.
+  const std::vector<Kept> wrong = read_all(*reader, view("1000\t1\t2,3\t4: 0x020001\n"));
+  ASSERT_EQ(wrong.size(), 1u);
+  EXPECT_EQ(wrong[0].packet.error.fault, Fault::kUnexpected);
+}
+
+TEST(WireHex, WordsAndNumbersOfALogAreNoPackets) {
+  const std::string log =
+      "00 ff ff 00 00 04 22 06 00 02 00 01\n12\n1234\ndead beef\nadd 5 motes\nfeed the dog\n"
+      "00 ff ff 00 00 04 22 06 00 02 00 0g\n";
+  const auto reader = make_reader(InputFormat::kLog);
+  const std::vector<Kept> got = read_all(*reader, view(log));
+  ASSERT_EQ(got.size(), 2u);
+  EXPECT_EQ(got[0].packet.error, kSound);
+  EXPECT_EQ(got[1].packet.error.fault, Fault::kUnexpected);
+  EXPECT_EQ(got[1].packet.line, 7u);
+  EXPECT_EQ(reader->noise().lines, 5u);
+}
+
+TEST(WireHex, LinesThatEndWithTheirFcs) {
+  EXPECT_TRUE(lines_end_with_fcs(view("02 00 01 31 a4\n")));
+  EXPECT_TRUE(lines_end_with_fcs(view("hello\n02 00 01 31 a4\n02 00 01 31 a5\n")));
+  EXPECT_FALSE(lines_end_with_fcs(view("02 00 01 31 a4\n00 01 02\n00 01 02\n")));
+  EXPECT_FALSE(lines_end_with_fcs(view("00 00\n")));
+  EXPECT_FALSE(lines_end_with_fcs(view("")));
+}
+
+TEST(WireHex, RowsOfAHexDumpAreNoPackets) {
+  const char* const dumps[] = {
+      "0000 41 88 00 22 00 ff ff 01\n",
+      "2026-01-02 03:04:05\n0000  41 88 00 22 00 ff ff 01 00 3f 07 00 00 00 00 00\n0010  41 88\n",
+      "00000000: 4188 0022 00ff ff01  A..\"....\n",
+  };
+  for (const char* const dump : dumps) {
+    EXPECT_TRUE(is_hex_dump(view(dump))) << dump;
+    EXPECT_EQ(detect(view(dump)), InputFormat::kUnknown) << dump;
+  }
+  for (const char* const text : {"0000 01 02\n", "41881d220001000200 04 c4f5 01\n", "00 FF FF\n"}) {
+    EXPECT_FALSE(is_hex_dump(view(text))) << text;
+    EXPECT_EQ(detect(view(text)), InputFormat::kHex) << text;
+  }
+}
+
+struct PpiCase {
+  const char* record;
+  std::size_t cut;  // Bytes that the capture lacks.
+  std::uint64_t offset;
+  const char* bytes;
+  Error error;
+};
+TEST(WirePcap, ARecordAfterAPpiHeader) {
+  const PpiCase rows[] = {
+      {"0000 0800 c3000000  02 00 01 31 a4", 0, 8, "020001", kSound},
+      {"0000 0c00 e6000000  aabbccdd 02 00 01", 0, 12, "020001", kSound},
+      {"0000 0800 c3000000  02 00 01", 2, 8, "020001", {Fault::kCut, 3, ReqId::kNone}},
+      {"0000 0800 c3", 0, 0, "00000800c3", {Fault::kTruncated, 5, "WIRE-PCAP"_rule}},
+      {"0000 0800 c3", 9, 0, "00000800c3", {Fault::kCut, 5, ReqId::kNone}},
+      {"0000 0900 c3000000", 0, 0, "00000900c3000000", {Fault::kTruncated, 8, "WIRE-PCAP"_rule}},
+      {"0000 0700 c3000000", 0, 0, "00000700c3000000", {Fault::kUnexpected, 2, "WIRE-PCAP"_rule}},
+      {"0000 0800 c0000000", 0, 0, "00000800c0000000", {Fault::kUnexpected, 4, "WIRE-PCAP"_rule}},
+      {"0000 0800 69000000 11", 0, 8, "11", {Fault::kUnsupported, 0, "WIRE-PCAP"_rule}},
+  };
+  for (const PpiCase& row : rows) {
+    const std::string record = from_hex(row.record);
+    Packet packet;
+    decode_record(view(record), record.size() + row.cut, kLinkPpi, "WIRE-PCAP"_rule, packet);
+    EXPECT_EQ(packet.offset_bytes, row.offset) << row.record;
+    EXPECT_EQ(to_hex(packet.bytes), row.bytes) << row.record;
+    EXPECT_EQ(packet.error, row.error) << row.record;
+  }
 }
 
 struct RadioCase {

@@ -12,8 +12,8 @@ using testing::read_file;
 using testing::read_split;
 using testing::view;
 
-const InputFormat kFormats[] = {InputFormat::kHdlc, InputFormat::kSf, InputFormat::kPcap,
-                                InputFormat::kPcapng, InputFormat::kHex};
+const InputFormat kFormats[] = {InputFormat::kHdlc,   InputFormat::kSf,  InputFormat::kPcap,
+                                InputFormat::kPcapng, InputFormat::kHex, InputFormat::kLog};
 
 void check(InputFormat format, const std::string& input, std::mt19937& random,
            std::size_t* packets) {
@@ -57,7 +57,26 @@ TEST(Garbage, RandomBytes) {
   }
 }
 
-// Good files with some bytes changed, dropped or doubled get further than noise does.
+// Checks a good input with some bytes changed, dropped or doubled, which gets further than noise.
+void check_damaged(InputFormat format, const std::string& good, std::mt19937& random) {
+  ASSERT_FALSE(good.empty());
+  std::size_t packets = 0;
+  for (int round = 0; round < 200; ++round) {
+    std::string input = good;
+    for (unsigned i = 0, n = static_cast<unsigned>(1 + random() % 6); i < n; ++i) {
+      const std::size_t at = random() % input.size();
+      switch (random() % 4) {
+        case 0: input.erase(at, 1 + random() % 9); break;
+        case 1: input.insert(at, input.substr(random() % input.size(), random() % 9)); break;
+        default: input[at] = static_cast<char>(random()); break;
+      }
+      if (input.empty()) input = good;
+    }
+    check(format, input, random, &packets);
+  }
+  std::cout << "format " << static_cast<int>(format) << ": " << packets << " packets\n";
+}
+
 TEST(Garbage, DamagedFiles) {
   const std::pair<InputFormat, const char*> kInputs[] = {
       {InputFormat::kHdlc, "spec/captures/firmware/h10_hdlc_escape_and_bad_serial.serial.bin"},
@@ -66,25 +85,19 @@ TEST(Garbage, DamagedFiles) {
       {InputFormat::kPcapng, "spec/captures/firmware/d1_lose_request.pcapng"},
   };
   std::mt19937 random(78);
-  for (const auto& [format, path] : kInputs) {
-    const std::string good = read_file(path);
-    ASSERT_FALSE(good.empty());
-    std::size_t packets = 0;
-    for (int round = 0; round < 200; ++round) {
-      std::string input = good;
-      for (unsigned i = 0, n = static_cast<unsigned>(1 + random() % 6); i < n; ++i) {
-        const std::size_t at = random() % input.size();
-        switch (random() % 4) {
-          case 0: input.erase(at, 1 + random() % 9); break;
-          case 1: input.insert(at, input.substr(random() % input.size(), random() % 9)); break;
-          default: input[at] = static_cast<char>(random()); break;
-        }
-        if (input.empty()) input = good;
-      }
-      check(format, input, random, &packets);
-    }
-    std::cout << path << ": " << packets << " packets\n";
-  }
+  for (const auto& [format, path] : kInputs) check_damaged(format, read_file(path), random);
+}
+
+TEST(Garbage, DamagedLogs) {
+  constexpr const char* kLog =
+      "booted\n"
+      "received: 4188012200020001003f04010252b1 power: -44 lqi: 220 time: 1500000\n"
+      "psdu: 4188022200020001003f040102 power: -90 lqi: 7 time: 2500000\n"
+      "1000\t1\t2,3\t13: 0x41880322 00020001 003f0401 02\n"
+      "00 FF FF 00 00 04 22 06 00 02 00 01\n"
+      "7E 45 00 FF FF 00 00 04 22 06 00 02 00 01 5B 02 7E\n";
+  std::mt19937 random(80);
+  check_damaged(InputFormat::kLog, kLog, random);
 }
 
 // A pcapng file damaged in one block loses that block alone.

@@ -1,9 +1,9 @@
 #include "conformance/check/input/read.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstdio>
 #include <cstring>
+#include <fstream>
+#include <iterator>
 #include <limits>
 
 #include "conformance/check/align/steps.h"
@@ -16,12 +16,7 @@ namespace rubric::check {
 namespace {
 
 constexpr std::int64_t kNsPerUs = 1000;
-constexpr std::size_t kChunkBytes = 1024 * 1024;
 constexpr std::size_t kLookBytes = 4096;  // Enough to recognize a format.
-
-struct FileCloser {
-  void operator()(std::FILE* file) const { std::fclose(file); }
-};
 
 }  // namespace
 
@@ -150,7 +145,7 @@ Run in_one_order(Run run, const AlignOptions& options, std::optional<std::int64_
 }  // namespace
 
 struct RunReader::State {
-  ReadAs as;
+  AlignOptions align;
   Run run;
   std::vector<ReadSource> growing;       // By file; others are unused.
   std::optional<std::int64_t> begin_us;  // The first stamp, if it is forgotten.
@@ -169,14 +164,13 @@ struct RunReader::State {
     run.files.push_back(name);
     ReaderOptions options;
     options.interface_name = interface_name;
-    options.hex_framing = as.hex_framing;
-    reader = make_reader(as.format == InputFormat::kUnknown ? detect(start) : as.format, options);
+    reader = make_reader(detect(start), options);
     source = ReadSource{static_cast<std::uint32_t>(run.files.size() - 1), {}, 0};
   }
 };
 
-RunReader::RunReader(const ReadAs& as) : state_(std::make_unique<State>()) {
-  state_->as = as;
+RunReader::RunReader(const AlignOptions& options) : state_(std::make_unique<State>()) {
+  state_->align = options;
   state_->run.storage = std::make_shared<RunStorage>();
 }
 RunReader::~RunReader() = default;
@@ -189,18 +183,20 @@ std::uint32_t RunReader::open(const std::string& name) {
   return file;
 }
 
-void RunReader::take(std::uint32_t file, const Packet& packet, std::string_view interface_name) {
+void RunReader::take(std::uint32_t file, const Packet& packet, std::string_view interface_name,
+                     std::uint64_t number) {
+  if (number != 0) state_->growing[file].frames = number - 1;
   observe(packet, interface_name, state_->growing[file], state_->run);
 }
 
 Run RunReader::snapshot() const {
   std::optional<std::int64_t> begin_us = state_->begin_us;
-  return in_one_order(state_->run, state_->as.align, begin_us);
+  return in_one_order(state_->run, state_->align, begin_us);
 }
 
 void RunReader::forget(const Run& known, std::size_t end) {
   Run& run = state_->run;
-  if (!state_->begin_us) in_one_order(run, state_->as.align, state_->begin_us);
+  if (!state_->begin_us) in_one_order(run, state_->align, state_->begin_us);
   if (!state_->begin_us) return;
   // By tap: the last frame to forget. Taps that count for nothing, as another has the same, are
   // forgotten by their stamps.
@@ -272,44 +268,22 @@ bool RunReader::add_bytes(const std::string& name, std::string_view bytes, std::
 }
 
 bool RunReader::add_file(const std::string& path, std::string& error) {
-  const std::unique_ptr<std::FILE, FileCloser> file(std::fopen(path.c_str(), "rb"));
-  const auto broken = [&] {
-    error = path + ": " + std::strerror(errno);
+  std::ifstream file(path, std::ios::binary);
+  if (!file) {
+    error = path + ": cannot be opened";
     return false;
-  };
-  if (!file) return broken();
-  std::vector<char> chunk(kChunkBytes);
-  std::size_t size = std::fread(chunk.data(), 1, chunk.size(), file.get());
-  if (std::ferror(file.get())) return broken();
-  if (size < chunk.size() || looks_like_trace({chunk.data(), size})) {
-    std::string all(chunk.data(), size);  // Small, or text that is parsed whole.
-    while ((size = std::fread(chunk.data(), 1, chunk.size(), file.get())) > 0) {
-      all.append(chunk.data(), size);
-    }
-    if (std::ferror(file.get())) return broken();
-    return add_bytes(path, all, error);
   }
-  const auto* const data = reinterpret_cast<const std::uint8_t*>(chunk.data());
-  state_->begin(path, {data, kLookBytes}, path);
-  if (!state_->reader) return add_bytes(path, {chunk.data(), size}, error);  // Says why not.
-  auto take = [this](const Packet& packet) { state_->take(packet); };
-  do {
-    state_->reader->feed({data, size}, PacketSink(take));
-    size = std::fread(chunk.data(), 1, chunk.size(), file.get());
-  } while (size > 0);
-  if (std::ferror(file.get())) return broken();
-  state_->reader->finish(PacketSink(take));
-  return true;
+  return add_bytes(path, std::string(std::istreambuf_iterator<char>(file), {}), error);
 }
 
 Run RunReader::finish() {
   Run run = std::move(state_->run);
-  const ReadAs as = state_->as;
+  const AlignOptions options = state_->align;
   state_ = std::make_unique<State>();
-  state_->as = as;
+  state_->align = options;
   state_->run.storage = std::make_shared<RunStorage>();
   std::optional<std::int64_t> begin_us;
-  return in_one_order(std::move(run), as.align, begin_us);
+  return in_one_order(std::move(run), options, begin_us);
 }
 
 std::optional<Run> read(const std::vector<std::string>& files, std::string& error) {

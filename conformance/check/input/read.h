@@ -13,31 +13,26 @@
 
 namespace rubric::check {
 
-/// Formats of captures; .rtr logs are recognized by their first line in any case.
-struct ReadAs {
-  InputFormat format = InputFormat::kUnknown;  ///< kUnknown: found out from the content.
-  Framing hex_framing = Framing::kSf;          ///< Framing of the lines of hex text.
-  AlignOptions align = {};                     ///< Options of the alignment.
-};
-
 /// Collects files to one run. Damaged bytes are observed as such and never stop the reading.
 class RunReader {
  public:
-  explicit RunReader(const ReadAs& as = {});
+  explicit RunReader(const AlignOptions& align = {});
   ~RunReader();
   RunReader(const RunReader&) = delete;
   RunReader& operator=(const RunReader&) = delete;
 
-  /// Adds the file at `path`, .rtr text included; the format is found from its content. Returns
-  /// false, with `error` naming file and reason, if it cannot be read at all.
+  /// Adds a file's bytes, .rtr text included; the format is found from its content, and reports use
+  /// `name`. Returns false, with `error` naming file and reason, if they cannot be read at all.
+  /// 'rubric check' adds captures packet by packet, as every command reads them.
   bool add_file(const std::string& path, std::string& error);
-  /// Adds bytes at hand; reports use `name`.
   bool add_bytes(const std::string& name, std::string_view bytes, std::string& error);
   /// Opens a file or line whose packets come one by one; returns its index among the run's files.
   std::uint32_t open(const std::string& name);
   /// Takes the next packet of file `file`, which open() returned; the name is that of the packet's
-  /// interface, empty if it has none.
-  void take(std::uint32_t file, const Packet& packet, std::string_view interface_name);
+  /// interface, empty if it has none; the number is the packet's in its file, 0 for that after the
+  /// one before.
+  void take(std::uint32_t file, const Packet& packet, std::string_view interface_name,
+            std::uint64_t number = 0);
   /// Returns what finish() would return now; more may be added afterwards. The bytes of frames are
   /// shared.
   Run snapshot() const;

@@ -120,13 +120,14 @@ std::int64_t horizon_us(const Options& options) {
   return std::max(kHorizonMinUs, kTimesLongest * longest_us);
 }
 
-Follow::Follow(const ReadAs& as, const Options& options, std::int64_t horizon_us)
-    : options_(options), options_later_(options), horizon_us_(horizon_us), reader_(as) {
+Follow::Follow(const AlignOptions& align, const Options& options, std::int64_t horizon_us)
+    : options_(options), options_later_(options), horizon_us_(horizon_us), reader_(align) {
   options_later_.start_cold = false;
 }
 
-void Follow::take(std::uint32_t file, const Packet& packet, std::string_view interface_name) {
-  reader_.take(file, packet, interface_name);
+void Follow::take(std::uint32_t file, const Packet& packet, std::string_view interface_name,
+                  std::uint64_t number) {
+  reader_.take(file, packet, interface_name, number);
   // Two horizons are held when all is settled that can be.
   if (reader_.held() < judge_at_ || reader_.span_us() < 6 * horizon_us_) return;
   judge();

@@ -38,11 +38,12 @@ std::int64_t horizon_us(const Options& options);
 class Follow {
  public:
   /// Both references are kept. Judges with a horizon of `horizon_us`.
-  Follow(const ReadAs& as, const Options& options, std::int64_t horizon_us);
+  Follow(const AlignOptions& align, const Options& options, std::int64_t horizon_us);
 
   /// As those of RunReader. take() judges by itself where otherwise too much would gather.
   std::uint32_t open(const std::string& name) { return reader_.open(name); }
-  void take(std::uint32_t file, const Packet& packet, std::string_view interface_name);
+  void take(std::uint32_t file, const Packet& packet, std::string_view interface_name,
+            std::uint64_t number = 0);
 
   /// Judges what is held. Returns false, with why(), if the files are no run.
   bool judge();

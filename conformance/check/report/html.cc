@@ -27,7 +27,7 @@ constexpr std::string_view kMore =
     "details { border-top: 1px solid var(--line); padding: .4em 0; }\n"
     "summary { cursor: pointer; overflow-wrap: anywhere; }\n"
     "pre { overflow-x: auto; background: var(--panel); padding: .6em 1em; }\n"
-    "main { padding: 1em 1.6em; max-width: 90em; }\n"
+    "main { padding: 1em 1.6em; max-width: 90em; overflow-wrap: anywhere; }\n"
     "b.fail { color: var(--fail); } b.weak { color: var(--weak); }\n"
     "b.inconclusive, b.stray, b.note { color: var(--inconclusive); }\n";
 

@@ -125,9 +125,7 @@ inline Part only_interface(std::string_view pcapng, const std::string& name) {
 
 /// Reads the files as one run.
 inline Run put_together(const Apart& apart, const AlignOptions& options = {}) {
-  ReadAs as;
-  as.align = options;
-  RunReader reader(as);
+  RunReader reader(options);
   std::string error;
   for (const Part& part : apart.parts) reader.add_bytes(part.name, part.bytes, error);
   return reader.finish();

@@ -429,9 +429,14 @@ TEST(OneReader, ASecuredFrameIsOpaque) {
   all.bytes(kAir, InputFormat::kHex, Framing::kRadio);
   EXPECT_EQ(all.count("join_request"), 1);
   EXPECT_EQ(all.count("opaque"), 1);
-  RunReader reader({InputFormat::kHex, Framing::kRadio});
-  std::string error;
-  ASSERT_TRUE(reader.add_bytes("air", kAir, error)) << error;
+  RunReader reader;
+  const std::uint32_t file = reader.open("air");
+  ReaderOptions as;
+  as.hex_framing = Framing::kRadio;
+  auto take = [&](const Packet& packet) { reader.take(file, packet, {}); };
+  const std::string_view air = kAir;
+  make_reader(InputFormat::kHex, as)
+      ->feed(Bytes(reinterpret_cast<const std::uint8_t*>(air.data()), air.size()), take);
   const check::Run run = reader.finish();
   EXPECT_EQ(run.seen.size(), 1U);
   Options options;

@@ -127,7 +127,7 @@ TEST(Read, FilesOfOneRunShareTheirClock) {
 }
 
 TEST(Read, AMessageWithoutBytesMayComeFirst) {
-  RunReader reader({InputFormat::kSf, Framing::kSf});
+  RunReader reader;
   std::string error;
   const std::string_view stream("\x55\x20\x08\x00\xff\xff\x00\x00\x00\x00\x02", 11);
   ASSERT_TRUE(reader.add_bytes("stream", stream, error)) << error;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "spec/compiler/model.h"
@@ -24,8 +25,9 @@ GeneratedFiles emit_cpp(const Spec& spec);
 /// enums, and the list of a spec's messages. They need conformance/adapters/java/wire only.
 GeneratedFiles emit_java(const Spec& spec);
 /// Emits tools/wireshark/generated/rubric.lua: one file for all named specs that have a serial
-/// carrier, and their imports; nothing if there is none. For Lua 5.2 and later.
-GeneratedFiles emit_lua(const Model& model);
+/// carrier, and their imports; nothing if there is none. Frames are read by the protocol `usual`
+/// until the user chooses, else by the one with the most types. For Lua 5.2 and later.
+GeneratedFiles emit_lua(const Model& model, std::string_view usual = {});
 /// Emits codec/generated/<spec>/tables.h: reflection tables, see codec/reflect/schema.h.
 GeneratedFiles emit_tables(const Spec& spec);
 /// Emits codec/generated/requirements_table.h.

@@ -1,5 +1,7 @@
 """Expands directives. See tools/book/README.md."""
 
+import base64
+
 import diagrams
 from book import appendix, chapters, markup
 from book.cases import Cases
@@ -29,7 +31,7 @@ class Directives:
             "enum": self._one("enum", self.wire.enum),
             "rules": self._rules, "case": self._one("case", lambda name, _: self.cases.entry(name)),
             "dispatch": self._dispatch, "chart": self._chart, "states": self._states,
-            "help": self._help, "include": self._include,
+            "help": self._help, "include": self._include, "screenshot": self._screenshot,
             "coverage": lambda place, name, level: self.rules.coverage(),
             "all_layouts": self._all_layouts, "all_enums": self._all_enums,
             "all_rules": self._all_rules, "all_cases": self._all_cases,
@@ -37,7 +39,7 @@ class Directives:
             "decisions": self._decisions, "external_links": lambda *_: "@EXTERNAL_LINKS@",
         }
         self.with_name = {"layout", "mask", "enum", "rules", "case", "dispatch", "chart", "states",
-                          "help", "include"}
+                          "help", "include", "screenshot"}
 
     def survey(self, chapter):
         """Before anything is rendered: what is shown where; the references show the rest."""
@@ -196,6 +198,17 @@ class Directives:
         return (f'<figure class="listing help"><figcaption>{code(f"rubric {name} --help")}'
                 f'</figcaption><pre class="code"><code>{escape(text.strip())}</code></pre>'
                 "</figure>")
+
+    def _screenshot(self, place, name, _level):
+        """A PNG file of tools/book/screenshots, and the text for who does not see it."""
+        name, _, text = name.partition(" ")
+        path = self.project.root / "tools/book/screenshots" / name
+        if not text or not path.is_file():
+            self.mistakes.add(*place, "expected a file of tools/book/screenshots and what it shows")
+            return ""
+        data = base64.b64encode(path.read_bytes()).decode()
+        return (f'<figure class="screenshot"><img src="data:image/png;base64,{data}" '
+                f'alt="{escape(text)}"></figure>')
 
     def _include(self, place, name, _level):
         path = (self.project.root / name).resolve()

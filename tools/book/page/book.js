@@ -56,7 +56,7 @@
   const system = matchMedia('(prefers-color-scheme: dark)');
   const isDark = () => (document.documentElement.dataset.theme
     || (system.matches ? 'dark' : 'light')) === 'dark';
-  const label = () => { theme.textContent = isDark() ? 'Light' : 'Dark'; };
+  const label = () => theme.setAttribute('aria-pressed', String(isDark()));
   theme.addEventListener('click', () => {
     document.documentElement.dataset.theme = isDark() ? 'light' : 'dark';
     label();

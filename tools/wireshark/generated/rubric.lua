@@ -470,6 +470,7 @@ local protocol_choices = {
   {1, "RUBICON Communication Layer", 1},
   {2, "TinyOS Oscilloscope", 2},
 }
+local usual_protocol = 1
 
 -- Decoding by the tables above: the same rules as codec/reflect/decode.cc, in Lua. It knows the
 -- tables' form and no protocol.
@@ -805,6 +806,7 @@ local SERIAL_ACK, PACKET_ACK, PACKET_NOACK = 67, 68, 69  -- TEP 113, section 3.1
 local CONTENT_MIN = 4               -- Kind, a byte, CRC.
 local AFTER_HEADER_MAX = 254        -- Bytes after kind and sequence number, CRC included.
 local SF_PACKET_MAX = 255           -- What a length byte can say.
+local AM_BROADCAST = 0xffff         -- TEP 116.
 
 -- Fields, by their names in filters.
 
@@ -995,6 +997,110 @@ show = function(tree, node, prefix, view)
   end
 end
 
+-- What the column Info says: the fields as `rubric decode` prints them.
+
+local HEX_MOST, ELEMENTS_MOST = 24, 24
+
+local function hex_text(bytes)
+  if #bytes == 0 then return "(empty)" end
+  local text = bytes:sub(1, HEX_MOST):gsub(".", function(c)
+    return string.format("%02x", c:byte())
+  end)
+  return #bytes > HEX_MOST and text .. "..(" .. #bytes .. " bytes)" or text
+end
+
+local function mask_text(field, value)
+  local names = {}
+  for i = 1, masks[field.mask].count do
+    if math.floor(value / 2 ^ (i - 1)) % 2 == 1 then
+      names[#names + 1] = masks[field.mask][i] or "bit" .. i - 1
+    end
+  end
+  return #names == 0 and "0" or table.concat(names, "|")
+end
+
+-- Of a number's bits, IEEE 754 binary32.
+local function float_text(bits)
+  local exponent, fraction = math.floor(bits / 2 ^ 23) % 256, bits % 2 ^ 23
+  local value
+  if exponent == 255 then
+    value = fraction == 0 and math.huge or 0 / 0
+  elseif exponent == 0 then
+    value = fraction * 2 ^ -149
+  else
+    value = (fraction + 2 ^ 23) * 2 ^ (exponent - 150)
+  end
+  return string.format("%.7g", bits >= 2 ^ 31 and -value or value)
+end
+
+local function number_text(field, value)
+  if field.kind == "mask" then return mask_text(field, value) end
+  if field.kind == "float" then return float_text(value) end
+  return field.enum and enums[field.enum][value] or string.format("%d", value)
+end
+
+local function is_pair(node)
+  return #node == 2 and node[1].kind == "number" and node[2].kind == "number"
+end
+
+local function structure_text(out, node)
+  if is_pair(node) then
+    return number_text(node[1].field, node[1].value) .. ":" ..
+        number_text(node[2].field, node[2].value)
+  end
+  return "{" .. out:fields_text(node) .. "}"
+end
+
+function Decoder:value_text(node)
+  if node.kind == "number" then return number_text(node.field, node.value) end
+  if node.kind == "bytes" then
+    return hex_text(self.bytes:sub(node.offset + 1, node.offset + node.size))
+  end
+  if node.kind == "struct" then return structure_text(self, node) end
+  local parts = {}
+  for i, child in ipairs(node) do
+    if node.kind == "numbers" and i > ELEMENTS_MOST then
+      parts[i] = ".." .. #node .. " in all"
+      break
+    end
+    parts[i] = node.kind == "numbers" and number_text(node.field, child.value) or
+        structure_text(self, child)
+  end
+  return "[" .. table.concat(parts, " ") .. "]"
+end
+
+-- Messages within the message follow after a bar.
+function Decoder:fields_text(node)
+  local parts = {}
+  for _, child in ipairs(node) do
+    local structure = child.kind == "struct"
+    if structure and self:is_message(child) then
+      parts[#parts + 1] = "| " .. self:fields_text(child)
+    elseif not structure or #child > 0 then
+      local equals = structure and not is_pair(child) and "" or "="
+      parts[#parts + 1] = child.field.name .. equals .. self:value_text(child)
+    end
+  end
+  return table.concat(parts, " ")
+end
+
+function Decoder:is_message(node)
+  for _, type in ipairs(self.path) do
+    if node.type == type then return true end
+  end
+  return false
+end
+
+-- The outermost message of a frame, or nil.
+local function payload_of(out, node)
+  for _, child in ipairs(node) do
+    if child.kind == "struct" and out:is_message(child) then return child end
+    local inner = child.kind == "struct" and payload_of(out, child)
+    if inner then return inner end
+  end
+  return nil
+end
+
 local function path_text(path)
   local names = {}
   for i, type in ipairs(path) do names[i] = type.name end
@@ -1023,7 +1129,9 @@ local function show_all(tree, pinfo, out, view, am_type, fault)
   for _, stale in ipairs(out.stale) do
     tree:add(fields["rubric.stale"], range_of(view, stale.offset, stale.size))
   end
-  pinfo.cols.info = path ~= "" and path or "AM " .. tostring(am_type or "?")
+  local message = payload_of(out, out[1])
+  pinfo.cols.info = (path ~= "" and path or "AM " .. tostring(am_type or "?")) ..
+      (message and " " .. out:fields_text(message) or "")
   local whole = view.tvb()
   for _, note in ipairs(out.notes) do
     tree:add_tvb_expert_info(note_expert, whole, note.kind .. " at " .. note.offset .. ": " ..
@@ -1035,8 +1143,8 @@ end
 
 -- Where packets come from.
 
-rubric.prefs.protocol = Pref.enum("Protocol", 1, "Whose messages the frames carry", protocol_choices,
-                                  false)
+rubric.prefs.protocol = Pref.enum("Protocol", usual_protocol, "Whose messages the frames carry",
+                                  protocol_choices, false)
 rubric.prefs.pan = Pref.uint("PAN (AM group)", 0x22, "Radio frames of this PAN are decoded")
 
 local function protocol() return protocols[rubric.prefs.protocol] end
@@ -1052,10 +1160,23 @@ local function begin(pinfo, root, tvb)
   return root:add(rubric, tvb())
 end
 
+local function address_text(address)
+  return address == AM_BROADCAST and "Broadcast" or string.format("0x%04x", address)
+end
+
+-- Says where a packet of a serial line or a forwarder goes, as Wireshark does for radio frames.
+local function show_addresses(pinfo, header)
+  for _, one in ipairs(header or {}) do
+    if one.field.name == "dest" then pinfo.cols.dst = address_text(one.value) end
+    if one.field.name == "src" then pinfo.cols.src = address_text(one.value) end
+  end
+end
+
 local function dissect_packet(tvb, pinfo, tree, fault)
   local carriers = protocol().carriers
   local out = decode(carriers.serial, tvb:raw(), radio_choice(carriers))
   local am_type = tvb:len() >= 8 and tvb(0, 1):uint() == 0 and tvb(7, 1):uint() or nil
+  show_addresses(pinfo, out[1][1])
   show_all(tree, pinfo, out, {tvb = tvb, skipped = 0}, am_type, fault)
 end
 

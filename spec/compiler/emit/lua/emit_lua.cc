@@ -25,6 +25,7 @@ local protocols = {
 local protocol_choices = {
 <<choices>>
 }
+local usual_protocol = <<usual>>
 
 <<decode>>
 
@@ -263,16 +264,18 @@ std::string serial_frame_of(const Model& model) {
 
 namespace rubricc {
 
-GeneratedFiles emit_lua(const Model& model) {
+GeneratedFiles emit_lua(const Model& model, std::string_view usual) {
   using namespace lua;
   const std::vector<const Spec*> protocols = protocols_of(model);
   if (protocols.empty()) return {};
   std::string tables, carriers, choices, files;
+  std::size_t usual_at = 1;
   for (const auto& spec : model.specs) tables += spec_tables(*spec);
   for (std::size_t i = 0; i < protocols.size(); ++i) {
     const Spec& spec = *protocols[i];
     carriers += protocol_text(spec) + "\n";
     choices += fmt::format("  {{{}, {}, {}}},\n", i + 1, lua::quote(spec.title), i + 1);
+    if (spec.id == usual) usual_at = i + 1;
     files += (i == 0 ? "" : " ") + spec.file;
   }
   const auto lines = [](std::string text) {
@@ -285,6 +288,7 @@ GeneratedFiles emit_lua(const Model& model) {
                    {"serial_frame", serial_frame_of(model)},
                    {"protocols", lines(carriers)},
                    {"choices", lines(choices)},
+                   {"usual", std::to_string(usual_at)},
                    {"decode", lines(std::string(lua_code().at("decode")))},
                    {"crc16", lines(std::string(lua_code().at("crc16")))},
                    {"wireshark", lines(std::string(lua_code().at("wireshark")))}});

@@ -1,0 +1,27 @@
+// How the bytes of an input are read: by its options, and where they leave it open by its content.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "codec/containers/reader.h"
+#include "tools/cli/fcs.h"
+#include "tools/cli/input.h"
+
+namespace rubric::cli {
+
+/// What was decided about an input.
+struct Reading {
+  InputFormat format = InputFormat::kUnknown;
+  ReaderOptions options;
+  FcsKind fcs = FcsKind::kCrc;
+  std::string remark;  ///< What nobody asked for was decided from the content; empty: nothing.
+};
+
+/// Returns how an input that begins with these bytes is read.
+Reading reading_of(const InputOptions& options, Bytes beginning);
+
+/// Returns the name of a format, as for --input-format.
+std::string_view format_name(InputFormat format);
+
+}  // namespace rubric::cli
