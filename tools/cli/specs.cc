@@ -153,10 +153,10 @@ std::string dissector_with(const std::string& file) {
   const auto& types = model.specs.back()->types;
   if (std::none_of(types.begin(), types.end(),
                    [](const auto& type) { return type->carrier == "serial"; })) {
-    report::print(stderr,
-                  "rubric: {}: no type has '-carrier: serial', so that no packet leads to its "
-                  "messages\n",
-                  file);
+    text::print(stderr,
+                "rubric: {}: no type has '-carrier: serial', so that no packet leads to its "
+                "messages\n",
+                file);
     exit_with(kExitInput);
   }
   return rubricc::emit_lua(model, model.specs.back()->id).front().text;

@@ -21,7 +21,7 @@ constexpr std::size_t kRowsDefault = 24;
 void say_what_is_awaited() {
   static bool said = false;
   if (::isatty(STDIN_FILENO) == 0 || std::exchange(said, true)) return;
-  report::print(stderr, "rubric: reads what is typed here; Ctrl-D on a line of its own ends it\n");
+  text::print(stderr, "rubric: reads what is typed here; Ctrl-D on a line of its own ends it\n");
 }
 
 std::size_t columns(std::size_t asked, int fd) {

@@ -209,18 +209,18 @@ void color(const wireshark::Folders& folders, const InstallWiresharkOptions& opt
   const std::string wanted = options.remove ? others : std::string(kOurColors) + others;
   if (wanted == now || now.empty()) {
     const char* const why = now.empty() ? "Wireshark's own are not found" : "as they should be";
-    return report::print(stdout, "left alone {}: {}\n", path.string(), why);
+    return text::print(stdout, "left alone {}: {}\n", path.string(), why);
   }
-  if (options.dry_run) return report::print(stdout, "would write {}\n", path.string());
+  if (options.dry_run) return text::print(stdout, "would write {}\n", path.string());
   std::error_code error;
   fs::create_directories(folders.config, error);
   if (wanted == shipped) {
     fs::remove(path, error);
     if (error) refuse(path, error.message());
-    return report::print(stdout, "removed {}\n", path.string());
+    return text::print(stdout, "removed {}\n", path.string());
   }
   if (!cli::write_file(path.string(), wanted)) cli::exit_with(cli::kExitOutput);
-  report::print(stdout, "wrote {}\n", path.string());
+  text::print(stdout, "wrote {}\n", path.string());
 }
 
 void install(const InstallWiresharkOptions& options) {
