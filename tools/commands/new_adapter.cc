@@ -50,31 +50,14 @@ const Language& language_of(const std::string& name) {
   throw cli::UsageError("LANGUAGE", "python, cpp or java, not '" + name + "'");
 }
 
-[[noreturn]] void refuse(const std::string& path, const std::string& why) {
-  report::print(stderr, "rubric new-adapter: cannot write {}: {}\n", path, why);
-  cli::exit_with(cli::kExitOutput);
-}
-
 void write_skeleton(const NewAdapterOptions& options) {
   const Language& language = language_of(options.language);
-  std::error_code error;
-  fs::create_directories(options.out, error);
-  if (error) refuse(options.out, error.message());
-  std::vector<std::pair<fs::path, std::string>> files;
+  std::vector<std::pair<std::string, std::string>> files;
   for (const SkeletonFile& file : skeleton_files()) {
     if (file.language == language.name) files.emplace_back(file.name, file.text);
   }
   files.emplace_back(kKnown, suite::list_to_begin_with(suite::Cases::own(), machine::Role::kMote));
-  for (auto& [path, text] : files) {
-    path = fs::path(options.out) / path;
-    if (fs::exists(fs::symlink_status(path, error))) {
-      refuse(path.string(), "it exists, and may hold your work");
-    }
-  }
-  for (const auto& [path, text] : files) {
-    if (!cli::write_file(path.string(), text)) cli::exit_with(cli::kExitOutput);
-    report::print(stdout, "wrote {}\n", path.lexically_normal().string());
-  }
+  write_new_files("new-adapter", options.out, std::move(files));
   report::print(stdout, "Next:\n");
   if (options.out != ".") report::print(stdout, "  cd {}\n", options.out);
   if (*language.build) report::print(stdout, "  {}\n", language.build);
@@ -82,6 +65,28 @@ void write_skeleton(const NewAdapterOptions& options) {
 }
 
 }  // namespace
+
+void write_new_files(const std::string& command, const std::string& folder,
+                     std::vector<std::pair<std::string, std::string>> files) {
+  const auto refuse = [&](const fs::path& path, const std::string& why) {
+    report::print(stderr, "rubric {}: cannot write {}: {}\n", command, path.string(), why);
+    cli::exit_with(cli::kExitOutput);
+  };
+  std::error_code error;
+  for (auto& [name, text] : files) {
+    const fs::path path = fs::path(folder) / name;
+    fs::create_directories(path.parent_path(), error);
+    if (error) refuse(path.parent_path(), error.message());
+    if (fs::exists(fs::symlink_status(path, error))) {
+      refuse(path, "it exists, and may hold your work");
+    }
+    name = path.string();
+  }
+  for (const auto& [path, text] : files) {
+    if (!cli::write_file(path, text)) cli::exit_with(cli::kExitOutput);
+    report::print(stdout, "wrote {}\n", fs::path(path).lexically_normal().string());
+  }
+}
 
 void add_new_adapter(cli::Command& app) {
   auto options = std::make_shared<NewAdapterOptions>();

@@ -1,17 +1,24 @@
-// rubric new-adapter: writes a working adapter of rct/1, to be filled with an implementation.
+// rubric new-adapter and new-protocol: write skeletons that work, to be filled.
 #pragma once
 
+#include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace rubric::tools {
 
 struct SkeletonFile {
-  std::string_view language;
+  std::string_view language;  ///< Or "protocol".
   std::string_view name;
   std::string_view text;
 };
 /// Returns the files of tools/skeletons, which the program contains.
 const std::vector<SkeletonFile>& skeleton_files();
+
+/// Writes files, by name, into a folder, and prints their names. Ends the subcommand with 74 if one
+/// of them exists or cannot be written.
+void write_new_files(const std::string& command, const std::string& folder,
+                     std::vector<std::pair<std::string, std::string>> files);
 
 }  // namespace rubric::tools

@@ -1,5 +1,6 @@
 # cmake -DROOT=project -DOUT=embedded_skeletons.cc -P embed_skeletons.cmake: the files that
-# `rubric new-adapter` writes, as C++ text. Python's loop is that of the adapter that ships.
+# `rubric new-adapter` and `new-protocol` write, as C++ text. Python's loops are those of the adapters
+# that ship.
 set(text "// Generated from tools/skeletons when the program is built.
 #include \"tools/commands/new_adapter.h\"
 
@@ -21,6 +22,10 @@ add_file(cpp my_node.h tools/skeletons/cpp/my_node.h)
 add_file(java Adapter.java tools/skeletons/java/Adapter.java)
 add_file(java MyNode.java tools/skeletons/java/MyNode.java)
 add_file(java World.java tools/skeletons/java/World.java)
+foreach(name README.md app.yaml cases/protocol.rtr node.py protocol.ksy requirements.yaml)
+  add_file(protocol ${name} tools/skeletons/protocol/${name})
+endforeach()
+add_file(protocol rct.py conformance/protocols/ctp/rct.py)
 string(APPEND text "  };
   return files;
 }

@@ -131,6 +131,8 @@ class Node:
         self.world.transmit(self.parent, self.id, DATA, head + data, ack=True)
 
     def sent(self, acked):
+        if not self.tries:
+            return    # Nothing of this node's was on the air.
         if acked or self.tries >= self.transmissions:
             _, origin, _, _, _ = self.queue.pop(0)
             self.tries = 0

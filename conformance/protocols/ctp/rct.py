@@ -1,7 +1,7 @@
 """rct/1 for a node in Python: reads commands, turns the clock, writes what happens.
 
-A node is a class, made with its World, its role, and by name its TinyOS id, a seed and what it states
-of itself, perhaps with the values that a trace wants:
+A node is a class, made with its World, its role, and by name its TinyOS id, a seed and what it
+states of itself, perhaps with the values that a trace wants:
 
     node.heard(dest, src, am_type, payload)    a frame came by radio, whoever it is for
     node.sent(acked)                           a frame of its own that asked for an ack is over

@@ -16,6 +16,7 @@
 #include "conformance/machine/messages.h"
 #include "conformance/machine/transport.h"
 #include "conformance/selftest/scripts/difference.h"
+#include "conformance/selftest/scripts/rtr.h"
 #include "conformance/test/runner/subject_target.h"
 
 namespace rubric::script {
