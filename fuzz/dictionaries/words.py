@@ -17,7 +17,8 @@ CODE = r"`([^`\s]+)`"                               # Of a document.
 
 TABLES = "codec/generated/rubicon/tables.h"
 APPLICATION = "spec/wire/rubicon.app.yaml"
-APP_NAME = r"\b([a-z]\w*)(?=[:,}\]])"
+CALLS = [(APPLICATION, r"(?:^ *|[{,] ?)([a-z]\w*):"), (APPLICATION, r"\d: \"?([a-z]\w+)"),
+         ("conformance/trace/protocol.cc", r'\{"(\w+)", App')]
 NAMES = r'^constexpr Type \w+\{\s*"(\w+)"'
 ENTRIES = r'\{\d+, "(\w+)"\}'
 RULES = "spec/requirements.yaml"
@@ -25,7 +26,7 @@ RULES = "spec/requirements.yaml"
 # By dictionary: what it is made of, as (file or folder/*.ext, pattern).
 SOURCES = {
     "trace": [("spec/trace/rtr.ebnf", LITERAL), (TABLES, FIELD), (TABLES, NAMES),
-              (TABLES, ENTRIES), (APPLICATION, APP_NAME), (RULES, ID)],
+              (TABLES, ENTRIES), *CALLS, (RULES, ID)],
     "spec": [("spec/wire/*.ksy", KEY), ("spec/wire/*.ksy", r"(?:type|enum|encoding): (\w+)"),
              ("spec/compiler/load/read_*.cc", LITERAL),
              ("spec/compiler/load/expr_parser.cc", LITERAL)],
@@ -38,7 +39,7 @@ SOURCES = {
                (TABLES, FIELD), (TABLES, NAMES), (TABLES, ENTRIES)],
     "rct": [("conformance/PORTING.md", CODE), ("conformance/test/targets/serve.cc", LITERAL),
             ("conformance/test/targets/rct_text.cc", LITERAL),
-            (APPLICATION, APP_NAME), (RULES, ID)],
+            *CALLS, (RULES, ID)],
 }
 # No includes, no paths, no formats.
 GOOD = re.compile(r"^(?!.*(\.h$|\.yml$|\{\}|\\|/\w*/))[ -~]{1,48}$")
