@@ -495,7 +495,8 @@ std::uint16_t source(const Line& line, const Scope& scope, const AmFrame& frame)
     const auto known = [&](const NodeHeader& one) { return one.id == src->second; };
     if (std::any_of(scope.nodes.begin(), scope.nodes.end(), known)) return src->second;
   }
-  // Sinks hear motes; a mote's other frames come from its sink. Of other protocols nothing is known.
+  // Sinks hear motes; a mote's other frames come from its sink. Of other protocols nothing is
+  // known.
   const NodeHeader* hears = line.op == Op::kGiven ? scope.node(line.node) : nullptr;
   std::optional<std::uint16_t> found;
   for (const NodeHeader& one : scope.nodes) {

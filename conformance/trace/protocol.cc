@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "codec/generated/rubicon/tables.h"
-#include "codec/reflect/encode.h"
+#include "codec/reflect/frame.h"
 #include "codec/reflect/suggest.h"
 #include "conformance/trace/value_text.h"
 
@@ -24,8 +24,8 @@ constexpr const char* kTypes = "u1, u2, u4, f4, bytes, address, channel";
 
 template <class Table>
 const Table* find_table(const Table* const* tables, std::size_t count, std::string_view name) {
-  const auto* const found = std::find_if(
-      tables, tables + count, [&](const Table* one) { return one->name == name; });
+  const auto* const found =
+      std::find_if(tables, tables + count, [&](const Table* one) { return one->name == name; });
   return found == tables + count ? nullptr : *found;
 }
 
@@ -218,9 +218,8 @@ class AppReader {
 
   void message(AppWhat what, const YAML::Node& key, const YAML::Node& node) {
     AppMessage one{word(key), what};
-    const bool twice =
-        std::any_of(out_.messages.begin(), out_.messages.end(),
-                    [&](const AppMessage& other) { return other.name == one.name; });
+    const bool twice = std::any_of(out_.messages.begin(), out_.messages.end(),
+                                   [&](const AppMessage& other) { return other.name == one.name; });
     if (twice) fail(key, quoted(one.name) + " is given twice");
     for (const auto& [name, type] : entries(node)) {
       one.fields.push_back(field(type));
@@ -304,7 +303,7 @@ class AppReader {
   Protocol out_;
 };
 
-Protocol rubicon() {
+Protocol read_rubicon() {
   const auto& [name, text] = *embedded_protocol().begin();
   Protocol out = read_protocol(text, name, [](const std::string&) -> const reflect::Protocol& {
     return rubicon::tables::kProtocol;
@@ -334,7 +333,7 @@ Protocol read_protocol(const std::string& text, const std::string& file,
 
 const Protocol& protocol() {
   if (slot()) return *slot();
-  static const Protocol own = rubicon();
+  static const Protocol own = read_rubicon();
   return own;
 }
 

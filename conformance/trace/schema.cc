@@ -298,8 +298,7 @@ Schema::Schema() {
   add_carrier(*protocol().wire, "serial", &Shape::serial);
 }
 
-void Schema::add_carrier(const reflect::Protocol& wire, const char* carrier,
-                         bool Shape::*travels) {
+void Schema::add_carrier(const reflect::Protocol& wire, const char* carrier, bool Shape::*travels) {
   const Type* type = reflect::find_carrier(wire, carrier);
   if (!type || type->field_count == 0) return;
   const reflect::Switch* choice = type->fields[type->field_count - 1].choice;

@@ -169,9 +169,7 @@ std::string_view op_text(Op op) {
   return {};
 }
 
-std::string_view role_text(Role role) {
-  return role_info(role).name;
-}
+std::string_view role_text(Role role) { return role_info(role).name; }
 
 const RoleInfo& role_info(Role role) { return protocol().roles.at(static_cast<std::size_t>(role)); }
 

@@ -85,6 +85,9 @@ else()
 endif()
 install(FILES tools/wireshark/generated/rubric.lua
   DESTINATION ${CMAKE_INSTALL_DATADIR}/rubric/wireshark COMPONENT tool)
+install(DIRECTORY conformance/protocols/ctp
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/rubric/protocols COMPONENT tool
+  PATTERN "__pycache__" EXCLUDE PATTERN "bugs.json" EXCLUDE)
 install(FILES LICENSE README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT tool)
 # The book, if it was made: target `book`.
 install(FILES ${PROJECT_BINARY_DIR}/doc/rubric.html DESTINATION ${CMAKE_INSTALL_DOCDIR}

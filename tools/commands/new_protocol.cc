@@ -49,7 +49,8 @@ void write_protocol(const NewProtocolOptions& options) {
                        replaced(std::string(file.text), kPlaceholder, options.name));
   }
   write_new_files("new-protocol", out, std::move(files));
-  report::print(stdout, "Next:\n  rubric test --protocol {0} --target 'python3 {0}/node.py'\n", out);
+  report::print(stdout, "Next:\n  rubric test --protocol {0} --target 'python3 {0}/node.py'\n",
+                out);
 }
 
 }  // namespace

@@ -2,14 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <stdexcept>
 
 #include "conformance/trace/protocol.h"
 #include "tools/cli/exit_codes.h"
-#include "tools/cli/input.h"
 #include "tools/cli/specs.h"
+#include "tools/cli/verdict.h"
 
 namespace rubric::tools {
 
@@ -23,7 +22,7 @@ void add_protocol_option(cli::Command& command, std::string& folder) {
       .check(cli::given);
 }
 
-void use_protocol(const std::string& command, const std::string& folder,
+void use_protocol(const char* command, const std::string& folder,
                   const std::vector<std::string>& profiles, std::vector<std::string>& traces) {
   if (folder.empty()) return;
   const std::string app = (fs::path(folder) / "app.yaml").string();

@@ -75,7 +75,11 @@ std::vector<shrink::Player> references(
     const trace::File& file, const trace::Statement& stated,
     const std::vector<std::unique_ptr<AttachedPlayer>>& attached) {
   std::vector<shrink::Player> all;
-  for (const auto& one : attached) all.push_back(one->player());
+  for (const auto& one : attached) {
+    all.push_back(one->player());
+    if (passes(shrink::play(file, all.back()))) continue;
+    throw cli::UsageError("--reference", one->name() + " does not pass the trace itself");
+  }
   const auto add = [&](const runner::SubjectFactory& make) {
     all.push_back({[make](const trace::NodeHeader&) {
                      return std::make_unique<runner::SubjectTarget>(make());
@@ -112,11 +116,8 @@ void shrink_it(const ShrinkOptions& options) {
   for (const std::string& target : options.references) {
     others.push_back(std::make_unique<AttachedPlayer>(target, options.shared, options.profile));
   }
-  const std::vector<shrink::Player> sound = references(found->file, player.stated, others);
-  if (sound.size() < others.size()) {
-    throw cli::UsageError("--reference", "it has to pass " + one.name + " itself");
-  }
-  const auto shows = shrink::fails_alike(found->result, player, sound);
+  const auto shows =
+      shrink::fails_alike(found->result, player, references(found->file, player.stated, others));
   const shrink::Shrunk shrunk = shrink::shrink(found->file, one, shows);
   const std::string& name = one.name;
   if (shrunk.lines_before == 0) {

@@ -123,7 +123,7 @@ class Protocol(unittest.TestCase):
         code, _, err = self.rubric("shrink", "--protocol", "probes", trace, "--target", broken,
                                    "--reference", broken)
         self.assertEqual(code, 64)
-        self.assertIn("--reference: it has to pass long itself", err)
+        self.assertIn("--reference: probes_python 1.0 does not pass the trace itself", err)
         code, out, err = self.rubric("diff", "--protocol", "probes", "--target", good, "--target",
                                      broken)
         self.assertEqual(code, 1, err)

@@ -139,9 +139,10 @@ std::unique_ptr<Attachment> attach(const std::string& target, const Options& opt
                           text.starts_with("sf:") || text.starts_with("sf-server:") ||
                           text.starts_with("serial:");
   if (of_rubicon && !trace::protocol().has_machine) {
-    throw std::invalid_argument(fmt::format(
-        "the machine and nodes at their lines are for RUBICON; {} needs a command that speaks rct/1",
-        trace::protocol().name));
+    throw std::invalid_argument(
+        fmt::format("the machine and nodes at their lines are for RUBICON; {} needs a command that "
+                    "speaks rct/1",
+                    trace::protocol().name));
   }
   if (cut(text, "sf-server:")) return forwarder_server(text, options);
   if (cut(text, "sf:")) return forwarder_client(text, options);

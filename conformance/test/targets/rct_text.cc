@@ -60,9 +60,7 @@ std::optional<std::uint32_t> number_of(std::string_view text, std::uint32_t max)
 
 std::string_view link_word(Link link) { return kLinkWords[static_cast<std::size_t>(link)]; }
 std::optional<Link> link_of(std::string_view word) { return find_word<Link>(kLinkWords, word); }
-std::string_view role_word(Role role) {
-  return trace::role_text(static_cast<trace::Role>(role));
-}
+std::string_view role_word(Role role) { return trace::role_text(static_cast<trace::Role>(role)); }
 std::optional<Role> role_of(std::string_view word) {
   const std::optional<trace::Role> role = trace::find_role(word);
   return role ? std::optional(static_cast<Role>(*role)) : std::nullopt;
