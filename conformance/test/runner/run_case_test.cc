@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "conformance/test/runner/subject_target.h"
+#include "conformance/trace/events/lines.h"
 #include "conformance/trace/parse.h"
 
 namespace rubric::runner {

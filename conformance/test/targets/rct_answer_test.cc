@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "conformance/trace/print.h"
+
 namespace rubric::targets {
 namespace {
 

@@ -9,6 +9,7 @@
 #include "conformance/test/suite/canary.h"
 #include "conformance/test/suite/select.h"
 #include "conformance/test/suite/test/testing.h"
+#include "conformance/trace/events/lines.h"
 #include "conformance/trace/print.h"
 
 namespace rubric::suite {
