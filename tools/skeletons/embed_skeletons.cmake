@@ -1,5 +1,5 @@
 # cmake -DROOT=project -DOUT=embedded_skeletons.cc -P embed_skeletons.cmake: the files that
-# `rubric new-adapter` and `new-protocol` write, as C++ text. Python's loops are those of the adapters
+# `rubric new-adapter` and `new-protocol` write, as C++ text. Python's loops are those of adapters
 # that ship.
 set(text "// Generated from tools/skeletons when the program is built.
 #include \"tools/commands/new_adapter.h\"

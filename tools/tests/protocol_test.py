@@ -154,10 +154,11 @@ class Protocol(unittest.TestCase):
         for path, old, new, expected in [
                 (case, "number=7 ...", "nummer=7 ...", ":11:37: reading has no field 'nummer' (did "
                  "you mean 'number'?)"),
-                (case, "measured(220)", "measure(220)", ":12:30: unknown message 'measure' (did you "
-                 "mean 'measured'?)"),
+                (case, "measured(220)", "measure(220)", ":12:30: unknown message 'measure' (did "
+                 "you mean 'measured'?)"),
                 (case, "%node n1 node", "%node n1 sink", ":4:10: expected node, given 'sink'"),
-                (case, "[ANSWER-VALUE]", "[ANSWER-VALUES]", ":14:4: no requirement 'ANSWER-VALUES'"),
+                (case, "[ANSWER-VALUE]", "[ANSWER-VALUES]",
+                 ":14:4: no requirement 'ANSWER-VALUES'"),
                 (case, "%rtr 1", "%rtr 1 %profile paper", ":2:8: probes has no profiles"),
                 (rules, "level: MUST\n  clause: answers\n  sentence: \"A node answers",
                  "level: SHALL\n  clause: answers\n  sentence: \"A node answers",
