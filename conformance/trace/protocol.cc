@@ -19,7 +19,7 @@ namespace {
 constexpr std::uint32_t kU1 = 0xFF;
 constexpr std::uint32_t kU2 = 0xFFFF;
 constexpr std::uint32_t kU4 = 0xFFFFFFFF;
-constexpr std::uint32_t kPayloadMax = 114;
+constexpr std::uint32_t kAmPayloadMax = 114;
 constexpr const char* kTypes = "u1, u2, u4, f4, bytes, address, channel";
 
 template <class Table>
@@ -292,7 +292,7 @@ class AppReader {
              AppWhat::kFrame,
              {{"type", AppKind::kNumber, kU1, names_of("am_type")},
               {"payload", AppKind::kBytes},
-              {"size", AppKind::kNumber, kPayloadMax, nullptr, nullptr, true}}}};
+              {"size", AppKind::kNumber, kAmPayloadMax, nullptr, nullptr, true}}}};
   }
   void add_messages_of_links() {
     for (AppMessage& one : messages_of_links()) out_.messages.push_back(std::move(one));
