@@ -73,8 +73,8 @@ class AppReader {
 
   [[noreturn]] void fail(const YAML::Node& node, const std::string& what) const {
     const YAML::Mark at = node.Mark();
-    throw std::runtime_error(file_ + ':' + std::to_string(at.line + 1) + ':' +
-                             std::to_string(at.column + 1) + ": " + what);
+    throw std::runtime_error(file_ + ':' + std::to_string(std::max(at.line, 0) + 1) + ':' +
+                             std::to_string(std::max(at.column, 0) + 1) + ": " + what);
   }
 
   YAML::Node need(const YAML::Node& map, const char* key, const std::string& what) const {

@@ -201,4 +201,4 @@ class Node:
 
 
 rct.serve(Node, "rubric_python_ctp", ["node"],
-          transmissions=8, queue=8, beacon_min=128, beacon_max=524288)
+          transmissions=31, queue=12, beacon_min=128, beacon_max=524288)

@@ -1,7 +1,7 @@
 """rct/1 for a node in Python: reads commands, turns the clock, writes what happens.
 
-A node is a class, made with its World, its role, and by name its TinyOS id, a seed and what it
-states of itself, perhaps with the values that a trace wants:
+A node is a class, made with its World, its role, and by name its TinyOS id, a seed, and those of
+the protocol's parameters with which it can be built:
 
     node.heard(dest, src, am_type, payload)    a frame came by radio, whoever it is for
     node.sent(acked)                           a frame of its own that asked for an ack is over
@@ -69,21 +69,19 @@ def value_of(text):
 
 
 class Adapter:
-    def __init__(self, make, name, roles, stated):
-        self.make, self.roles, self.stated = make, roles, stated
+    def __init__(self, make, name, roles, parameters):
+        self.make, self.roles, self.parameters = make, roles, parameters
         self.greeting = f"hello rct/1 {name} 1.0 roles={','.join(roles)} time=virtual"
-        for parameter, value in stated.items():
-            self.greeting += f" {parameter}={value}"
         self.world = self.node = self.start = None
 
     def reset(self, role, *words):
         wanted = {name: int(value) for name, _, value in (word.partition("=") for word in words)}
-        if unknown := set(wanted) - {"id", "seed"} - set(self.stated):
+        if unknown := set(wanted) - {"id", "seed"} - set(self.parameters):
             return f"unsupported {' '.join(sorted(unknown))}"
         if role not in self.roles:
             return f"unsupported {role}"
         self.world = World()
-        settings = {"id": 0, "seed": 0, **self.stated, **wanted}
+        settings = {"id": 0, "seed": 0, **self.parameters, **wanted}
         self.start = lambda: self.make(self.world, role, **settings)
         self.node = self.start()
         return "ready"
@@ -127,9 +125,10 @@ class Adapter:
         return f"done {self.world.now}"
 
 
-def serve(make, name, roles, **stated):
-    """Answers rct/1 on standard input until `bye`. `stated` are the node's parameters."""
-    adapter = Adapter(make, name, roles, stated)
+def serve(make, name, roles, **parameters):
+    """Answers rct/1 on standard input until `bye`. `parameters` have the values that app.yaml has
+    for a node that states none."""
+    adapter = Adapter(make, name, roles, parameters)
     for line in sys.stdin:
         if line.strip() == "bye":
             break

@@ -69,7 +69,7 @@ TEST(Protocol, MistakesHaveTheirPlaces) {
     const char* expected;
   } wrong[] = {
       {"", "app.yaml:1:1: expected the keys of a protocol"},
-      {"a: [", "app.yaml:1:5: end of sequence flow not found"},
+      {"a: [", "app.yaml:1:1: end of sequence flow not found"},
       {"protocol: 7up\n", "app.yaml:1:11: expected a name of letters, digits and _, given '7up'"},
       {"protocol: p\n", "app.yaml:1:1: a protocol without 'wire'"},
       {"protocol: p\nwire: w\nrules: x\n",
@@ -126,8 +126,8 @@ TEST(Protocol, TracesOfAnotherHaveItsNames) {
       {"case a\n0..join_period s > app measured(*)\n",
        "t.rtr:5:4: expected ticks or a parameter, given 'join_period'; known are patience\n"},
       {"case a\n0 s < app join(1)\n", "t.rtr:5:11: unknown message 'join'\n"},
-      {"case a\n0 s < app measur(1)\n",
-       "t.rtr:5:11: unknown message 'measur' (did you mean 'measure'?)\n"},
+      {"case a\n0 s < app masure(1)\n",
+       "t.rtr:5:11: unknown message 'masure' (did you mean 'measure'?)\n"},
       {"case a\n0 s < app measure(speed=medium ...)\n",
        "t.rtr:5:19: speed: expected a number from 0 to 7 or of slow, fast, given 'medium'\n"},
       {"case a\n0 s < app measure(times=10 ...)\n",
