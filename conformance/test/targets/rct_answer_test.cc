@@ -62,7 +62,7 @@ TEST(RctAnswer, IsRead) {
   EXPECT_FALSE(answer.outputs[1].frame.link_ack);
   EXPECT_EQ(answer.outputs[1].frame.link, machine::Link::kSerial);
   EXPECT_TRUE(equal(answer.outputs[1].frame.bytes(), frame.bytes()));
-  EXPECT_EQ(trace::print(answer.outputs[2].news), "received(src=11:1 app_id=MOCKUP data=x0a0b)");
+  EXPECT_EQ(trace::print(answer.outputs[2].news), "received(src=11:5 app_id=connless data=x0a0b)");
   EXPECT_EQ(answer.outputs[2].requirement, "T1-DELIVER"_rule);
   EXPECT_EQ(trace::print(answer.outputs[3].news), "joined(address=11:5 result=success)");
   EXPECT_TRUE(answer.has_next);
