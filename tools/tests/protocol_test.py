@@ -84,7 +84,8 @@ class Protocol(unittest.TestCase):
         self.assertEqual(failed[0]["roles"], ["node"])
         failures = xml.etree.ElementTree.parse(report / "junit.xml").findall(".//failure")
         self.assertIn("ANSWER-OTHERS", failures[0].get("message"))
-        self.assertIn("not ok 2 - probes_python 1.0: answer.others", (report / "report.tap").read_text())
+        self.assertIn("not ok 2 - probes_python 1.0: answer.others",
+                      (report / "report.tap").read_text())
         page = (report / "index.html").read_text()
         self.assertIn('"roles":["node"]', page)
         self.assertIn("rubric test --protocol probes --target 'python3 broken/node.py' "
