@@ -2,7 +2,7 @@
 # `rubric new-adapter` and `new-protocol` write, as C++ text. Python's loops are those of adapters
 # that ship.
 set(text "// Generated from tools/skeletons when the program is built.
-#include \"tools/commands/new_adapter.h\"
+#include \"tools/commands/new/new_adapter.h\"
 
 namespace rubric::tools {
 

@@ -1,4 +1,4 @@
-#include "tools/commands/new_adapter.h"
+#include "tools/commands/new/new_adapter.h"
 
 #include <filesystem>
 #include <memory>

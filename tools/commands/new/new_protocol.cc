@@ -6,7 +6,7 @@
 
 #include "codec/text/text.h"
 #include "tools/commands/commands.h"
-#include "tools/commands/new_adapter.h"
+#include "tools/commands/new/new_adapter.h"
 
 namespace rubric::tools {
 namespace {
