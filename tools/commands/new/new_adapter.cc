@@ -1,3 +1,5 @@
+#include "tools/commands/new/new_adapter.h"
+
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -38,16 +40,16 @@ constexpr Language kLanguages[] = {
 };
 
 /// Returns names and texts of a language's files. Python's loop is that of the adapter that ships.
-std::vector<std::pair<fs::path, std::string>> skeleton_of(std::string_view language) {
+std::vector<std::pair<std::string, std::string>> skeleton_of(std::string_view language) {
   constexpr std::string_view kShipped = "rubric_python_mote 1.0";
-  std::vector<std::pair<fs::path, std::string>> files;
+  std::vector<std::pair<std::string, std::string>> files;
   for (const auto& [path, content] : skeleton_files()) {
     const fs::path file(path);
     if (file.parent_path().filename() != language) continue;
     std::string own(content);
     const std::size_t name = own.find(kShipped);
     if (name != own.npos) own.replace(name, kShipped.size(), "my_mote 0.1");
-    files.emplace_back(file.filename(), own);
+    files.emplace_back(file.filename().string(), own);
   }
   return files;
 }
@@ -64,28 +66,11 @@ const Language& language_of(const std::string& name) {
   throw cli::UsageError("LANGUAGE", "python, cpp or java, not '" + name + "'");
 }
 
-[[noreturn]] void refuse(const std::string& path, const std::string& why) {
-  text::print(stderr, "rubric new-adapter: cannot write {}: {}\n", path, why);
-  cli::exit_with(cli::kExitOutput);
-}
-
 void write_skeleton(const NewAdapterOptions& options) {
   const Language& language = language_of(options.language);
-  std::error_code error;
-  fs::create_directories(options.out, error);
-  if (error) refuse(options.out, error.message());
-  std::vector<std::pair<fs::path, std::string>> files = skeleton_of(language.name);
+  auto files = skeleton_of(language.name);
   files.emplace_back(kKnown, suite::list_to_begin_with(suite::Cases::own(), machine::Role::kMote));
-  for (auto& [path, text] : files) {
-    path = fs::path(options.out) / path;
-    if (fs::exists(fs::symlink_status(path, error))) {
-      refuse(path.string(), "it exists, and may hold your work");
-    }
-  }
-  for (const auto& [path, text] : files) {
-    if (!cli::write_file(path.string(), text)) cli::exit_with(cli::kExitOutput);
-    text::print(stdout, "wrote {}\n", path.lexically_normal().string());
-  }
+  write_new_files("new-adapter", options.out, std::move(files));
   text::print(stdout, "Next:\n");
   if (options.out != ".") text::print(stdout, "  cd {}\n", options.out);
   if (*language.build) text::print(stdout, "  {}\n", language.build);
@@ -93,6 +78,28 @@ void write_skeleton(const NewAdapterOptions& options) {
 }
 
 }  // namespace
+
+void write_new_files(const std::string& command, const std::string& folder,
+                     std::vector<std::pair<std::string, std::string>> files) {
+  const auto refuse = [&](const fs::path& path, const std::string& why) {
+    text::print(stderr, "rubric {}: cannot write {}: {}\n", command, path.string(), why);
+    cli::exit_with(cli::kExitOutput);
+  };
+  std::error_code error;
+  for (auto& [name, text] : files) {
+    const fs::path path = fs::path(folder) / name;
+    fs::create_directories(path.parent_path(), error);
+    if (error) refuse(path.parent_path(), error.message());
+    if (fs::exists(fs::symlink_status(path, error))) {
+      refuse(path, "it exists, and may hold your work");
+    }
+    name = path.string();
+  }
+  for (const auto& [path, text] : files) {
+    if (!cli::write_file(path, text)) cli::exit_with(cli::kExitOutput);
+    text::print(stdout, "wrote {}\n", fs::path(path).lexically_normal().string());
+  }
+}
 
 void add_new_adapter(cli::Command& app) {
   auto options = std::make_shared<NewAdapterOptions>();
