@@ -10,7 +10,6 @@
 #include <string_view>
 
 #include "codec/generate/known_protocols.h"
-#include "codec/generated/rubicon/all.h"
 #include "codec/generated/rubicon/messages.h"
 #include "codec/reflect/frame.h"
 
@@ -18,7 +17,6 @@ namespace rubric::generate {
 namespace {
 
 constexpr int kSeeds = 2000;
-constexpr std::size_t kMacHeader = 9;
 
 Packet packet_of(const Generated& made) {
   Packet packet;
@@ -242,39 +240,6 @@ TEST(NearValid, LengthsAreOffByOneInBothDirections) {
   std::map<int, int> count =
       off_by_one("learning_module_cmd", 15, 16, "WIRE-LEARNING-MODULE-CMD"_rule);
   EXPECT_GT(count[1], 20);
-}
-
-/// The generated views are a second decoder beside the tables.
-template <class View>
-void expect_view_reports(const Generated& made) {
-  const Result<View> view = View::parse(Bytes(made.bytes.data(), made.bytes.size()));
-  // Bytes after the frame are for the view's caller to judge; the view only shows them.
-  if (made.error.fault == Fault::kTrailing) {
-    ASSERT_TRUE(view.has_value()) << described(made);
-    ASSERT_EQ(made.error.offset_bytes + view->stale().size(), made.bytes.size());
-    return;
-  }
-  ASSERT_EQ(view.error(), made.error) << described(made) << "\nthe view: " << text(view.error());
-}
-
-TEST(NearValid, ViewsReportTheFaults) {
-  FrameGenerator generator(rubicon::tables::kProtocol, rubicon::messages::kRoutes, 5);
-  for (int i = 0; i < rubicon::messages::kRoutes.count; ++i) {
-    const reflect::Route& route = rubicon::messages::kRoutes.routes[i];
-    const std::string carrier = route.carrier;
-    for (int k = 0; k < kSeeds; ++k) {
-      const Generated made = k % 4 ? generator.near_valid(route) : generator.valid(route);
-      if (carrier == "serial") {
-        expect_view_reports<rubicon::RubiconView>(made);
-      } else if (carrier == "radio_i" || made.bytes.size() == kMacHeader) {
-        // A frame that ends with its MAC header is taken for an I-frame.
-        expect_view_reports<rubicon::RadioIFrameView>(made);
-      } else {
-        expect_view_reports<rubicon::RadioTFrameView>(made);
-      }
-      if (HasFatalFailure()) return;
-    }
-  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Protocols, Generator, ::testing::ValuesIn(all_known()),

@@ -4,14 +4,17 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <set>
 #include <string>
 #include <vector>
 
-#include "codec/generated/rubicon/tables.h"
+#include "codec/containers/test/testing.h"
+#include "codec/generate/frame_generator.h"
+#include "codec/generate/values.h"
+#include "codec/generated/rubicon/messages.h"
 #include "codec/reflect/compare_view.h"
-#include "codec/reflect/test_frames.h"
 #include "tools/tests/made_inputs.h"
 #include "tools/tests/readme/number.h"
 
@@ -55,92 +58,17 @@ class Follower {
 
  private:
   void differ(const std::string& how) { comparer_.differ("dispatch", how); }
-  void opaque(std::size_t chosen) {
-    if (chosen) differ(std::string("only the tables read a ") + decoded_[chosen].type->id);
-  }
-
-  // Handles messages that hold no others.
   template <class View>
-  void inside(const View&, std::size_t chosen) {
-    opaque(chosen);
-  }
-  void inside(const RubiconView& view, std::size_t chosen) {
-    using Kind = RubiconView::PayloadKind;
-    switch (view.payload_kind()) {
-      case Kind::kOpaque: return opaque(chosen);
-      case Kind::kCommand: return message(view.payload_as_command(), chosen);
-      case Kind::kSerialData: return message(view.payload_as_serial_data(), chosen);
-      case Kind::kLearningModuleCmd: return message(view.payload_as_learning_module_cmd(), chosen);
-      case Kind::kLearningModuleFloatCmd:
-        return message(view.payload_as_learning_module_float_cmd(), chosen);
-      case Kind::kNetMsg: return message(view.payload_as_net_msg(), chosen);
-      case Kind::kConfig: return message(view.payload_as_config(), chosen);
+  void inside(const View& view, std::size_t chosen) {
+    bool reads_it = false;
+    auto part = [&](Bytes, const auto& inner) {
+      reads_it = true;
+      message(inner, chosen);
+    };
+    visit_parts(view, part);
+    if (!reads_it && chosen) {
+      differ(std::string("only the tables read a ") + decoded_[chosen].type->id);
     }
-    differ("unknown kind of payload");
-  }
-  void inside(const RadioIFrameView& view, std::size_t chosen) { inside_radio(view, chosen); }
-  void inside(const RadioTFrameView& view, std::size_t chosen) { inside_radio(view, chosen); }
-  template <class View>
-  void inside_radio(const View& view, std::size_t chosen) {
-    using Kind = typename View::PayloadKind;
-    switch (view.payload_kind()) {
-      case Kind::kOpaque: return opaque(chosen);
-      case Kind::kRssiBeacon: return message(view.payload_as_rssi_beacon(), chosen);
-      case Kind::kJoinRequest: return message(view.payload_as_join_request(), chosen);
-      case Kind::kJoinReply: return message(view.payload_as_join_reply(), chosen);
-      case Kind::kNetMsg: return message(view.payload_as_net_msg(), chosen);
-      case Kind::kAckJoin: return message(view.payload_as_ack_join(), chosen);
-    }
-    differ("unknown kind of payload");
-  }
-  void inside(const NetMsgView& view, std::size_t chosen) {
-    using Kind = NetMsgView::PayloadKind;
-    switch (view.payload_kind()) {
-      case Kind::kOpaque: return opaque(chosen);
-      case Kind::kAppMsgFromPc: return message(view.payload_as_app_msg_from_pc(), chosen);
-      case Kind::kAppMsg: return message(view.payload_as_app_msg(), chosen);
-    }
-    differ("unknown kind of payload");
-  }
-  void inside(const AppMsgView& view, std::size_t chosen) {
-    using Kind = AppMsgView::BodyKind;
-    switch (view.body_kind()) {
-      case Kind::kOpaque: return opaque(chosen);
-      case Kind::kSerialJoined: return message(view.body_as_serial_joined(), chosen);
-      case Kind::kUpdates: return message(view.body_as_updates(), chosen);
-      case Kind::kReadUpdates: return message(view.body_as_read_updates(), chosen);
-      case Kind::kDemo: return message(view.body_as_demo(), chosen);
-      case Kind::kDemoData: return message(view.body_as_demo_data(), chosen);
-      case Kind::kLearningNotification:
-        return message(view.body_as_learning_notification(), chosen);
-      case Kind::kLearningModuleDown: return message(view.body_as_learning_module_down(), chosen);
-      case Kind::kLearningOutput: return message(view.body_as_learning_output(), chosen);
-      case Kind::kRubiconAck: return message(view.body_as_rubicon_ack(), chosen);
-      case Kind::kRubiconAckSeqOnly: return message(view.body_as_rubicon_ack_seq_only(), chosen);
-      case Kind::kSynapticData: return message(view.body_as_synaptic_data(), chosen);
-    }
-    differ("unknown kind of body");
-  }
-  void inside(const AppMsgFromPcView& view, std::size_t chosen) {
-    using Kind = AppMsgFromPcView::BodyKind;
-    switch (view.body_kind()) {
-      case Kind::kOpaque: return opaque(chosen);
-      case Kind::kSerialJoined: return message(view.body_as_serial_joined(), chosen);
-      case Kind::kUpdates: return message(view.body_as_updates(), chosen);
-      case Kind::kReadUpdates: return message(view.body_as_read_updates(), chosen);
-      case Kind::kDemo: return message(view.body_as_demo(), chosen);
-      case Kind::kDemoData: return message(view.body_as_demo_data(), chosen);
-      case Kind::kBroadcastCmd: return message(view.body_as_broadcast_cmd(), chosen);
-      case Kind::kSynCreateCmd: return message(view.body_as_syn_create_cmd(), chosen);
-      case Kind::kLearningModuleCmd: return message(view.body_as_learning_module_cmd(), chosen);
-      case Kind::kLearningModuleFloatCmd:
-        return message(view.body_as_learning_module_float_cmd(), chosen);
-      case Kind::kNetidCmd: return message(view.body_as_netid_cmd(), chosen);
-      case Kind::kRubiconAck: return message(view.body_as_rubicon_ack(), chosen);
-      case Kind::kRubiconAckSeqOnly: return message(view.body_as_rubicon_ack_seq_only(), chosen);
-      case Kind::kSynapticData: return message(view.body_as_synaptic_data(), chosen);
-    }
-    differ("unknown kind of body");
   }
 
   const Decoded& decoded_;
@@ -193,13 +121,13 @@ std::string difference(const char* carrier, Bytes frame, Tally& tally) {
 }
 
 /// Runs both readers on a frame; radio frames as I-frame and as T-frame, whatever they are.
-void hold(const TestFrame& frame, Tally& tally) {
-  const Bytes bytes(frame.bytes.data(), frame.bytes.size());
-  const std::string found = frame.radio ? difference<RadioIFrameView>("radio_i", bytes, tally) +
-                                              difference<RadioTFrameView>("radio_t", bytes, tally)
-                                        : difference<RubiconView>("serial", bytes, tally);
+void compare(Framing framing, Bytes frame, Tally& tally) {
+  const std::string found = framing == Framing::kRadio
+                                ? difference<RadioIFrameView>("radio_i", frame, tally) +
+                                      difference<RadioTFrameView>("radio_t", frame, tally)
+                                : difference<RubiconView>("serial", frame, tally);
   if (found.empty()) return;
-  ADD_FAILURE() << found << "\n" << hex(frame.bytes);
+  ADD_FAILURE() << found << "\n" << rubric::testing::to_hex(frame);
 }
 
 void print(const char* what, const Tally& tally) {
@@ -238,18 +166,47 @@ void add_paths(const Type& type, const std::string& path, std::set<std::string>&
 
 TEST(Dispatch, ViewsChooseWhatTheTablesChoose_Captures) {
   Tally tally;
-  const std::vector<TestFrame> frames = captured_frames("spec/captures");
-  for (const TestFrame& frame : frames) hold(frame, tally);
+  for (const auto& entry : std::filesystem::recursive_directory_iterator("spec/captures")) {
+    static const std::set<std::string> kCaptures{".bin", ".pcapng", ".sfstream"};
+    if (!kCaptures.contains(entry.path().extension())) continue;
+    const std::string input = rubric::testing::read_file(entry.path());
+    const auto reader = make_reader(detect(rubric::testing::view(input)));
+    ASSERT_NE(reader, nullptr) << entry.path();
+    for (const auto& kept : rubric::testing::read_all(*reader, rubric::testing::view(input))) {
+      const Packet packet = kept.get();
+      if (packet.framing == Framing::kHdlc && packet.kind == kSerialAck) continue;
+      if (!packet.bytes.empty()) compare(packet.framing, packet.bytes, tally);
+    }
+  }
   print("captures", tally);
-  EXPECT_GE(frames.size(), 900U) << "run from the project's folder";
+  EXPECT_GE(tally.frames, 900) << "run from the project's folder";
+}
+
+/// Changes a frame in one of the ways in which parsers go wrong.
+void damage(generate::Generated& frame, generate::Random& random) {
+  std::vector<std::uint8_t>& bytes = frame.bytes;
+  switch (random.below(5)) {
+    case 0: return bytes.resize(random.below(bytes.size() + 1));
+    case 1: return bytes.resize(bytes.size() + 1 + random.below(5), generate::any_byte(random));
+    case 2:
+      if (bytes.empty()) return;
+      bytes[random.below(bytes.size())] ^= static_cast<std::uint8_t>(1u << random.below(8));
+      return;
+    default: generate::change_field(tables::kProtocol, frame.framing, bytes, 250, random);
+  }
 }
 
 TEST(Dispatch, ViewsChooseWhatTheTablesChoose_MadeFrames) {
   Tally tally;
   const int made = made_inputs(static_cast<int>(readme_number("# made-up frames")));
-  FrameMaker maker(captured_frames("spec/captures"), tables::kProtocol, 20);
+  generate::FrameGenerator generator(tables::kProtocol, messages::kRoutes, 20);
+  generate::Random& random = generator.random();
   for (int i = 0; i < made && !::testing::Test::HasFailure(); ++i) {
-    hold(maker.make(), tally);
+    const Route& route = messages::kRoutes.routes[i % messages::kRoutes.count];
+    generate::Generated frame =
+        random.chance(0.2) ? generator.near_valid(route) : generator.valid(route);
+    for (std::size_t n = random.below(3); n > 0; --n) damage(frame, random);
+    compare(frame.framing, Bytes(frame.bytes.data(), frame.bytes.size()), tally);
   }
   print("made", tally);
   std::set<std::string> paths;

@@ -1,5 +1,5 @@
-// Runs a fuzz target without a fuzzing engine: on each file of the given folders, and, if the
-// target has a mutator of its own, on a fixed number of its mutations of each. A broken property
+// Runs a fuzz target without a fuzzing engine: on each file of the given folders, and on a fixed
+// number of mutations of each, made by the target's own mutator if it has one. A broken property
 // ends the process with a signal; the file is named before.
 #include <algorithm>
 #include <cstdint>
@@ -9,6 +9,8 @@
 #include <iterator>
 #include <string>
 #include <vector>
+
+#include "fuzz/support/mutate_bytes.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 extern "C" __attribute__((weak)) int LLVMFuzzerInitialize(int* argc, char*** argv);
@@ -22,6 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr unsigned kMutations = 20;
+constexpr unsigned kPlainMutations = 200;  // Of bytes, which are less likely to reach far.
 constexpr std::size_t kMaxSize = 4096;
 
 std::vector<fs::path> files_in(const fs::path& path) {
@@ -42,14 +45,16 @@ std::vector<std::uint8_t> bytes_of(const fs::path& path) {
 
 unsigned long replay(const std::vector<std::uint8_t>& input) {
   LLVMFuzzerTestOneInput(input.data(), input.size());
-  if (LLVMFuzzerCustomMutator == nullptr) return 1;
-  for (unsigned seed = 1; seed <= kMutations; ++seed) {
+  const bool aware = LLVMFuzzerCustomMutator != nullptr;
+  const auto mutate = aware ? &LLVMFuzzerCustomMutator : &rubric::fuzz::mutate_bytes;
+  const unsigned mutations = aware ? kMutations : kPlainMutations;
+  for (unsigned seed = 1; seed <= mutations; ++seed) {
     std::vector<std::uint8_t> mutated = input;
     mutated.resize(std::max(kMaxSize, input.size()));
-    mutated.resize(LLVMFuzzerCustomMutator(mutated.data(), input.size(), mutated.size(), seed));
+    mutated.resize(mutate(mutated.data(), input.size(), mutated.size(), seed));
     LLVMFuzzerTestOneInput(mutated.data(), mutated.size());
   }
-  return 1 + kMutations;
+  return 1 + mutations;
 }
 
 }  // namespace

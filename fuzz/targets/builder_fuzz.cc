@@ -108,7 +108,9 @@ void taken(const typename View::Value& value, Bytes bytes, const reflect::Type& 
   if (bytes.empty()) return;
   Guarded small(bytes.size() - 1);
   const auto refused = write(value, small.room());
-  require(!refused && refused.error().fault == Fault::kNoRoom, "less room is too little");
+  require(!refused && refused.error().fault == Fault::kNoRoom &&
+              refused.error().offset_bytes == bytes.size() - 1,
+          "less room is too little, and ends where it ends");
   small.check();
 }
 

@@ -4,9 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "codec/generated/oscilloscope/all.h"
-#include "codec/generated/rubicon/all.h"
-#include "codec/generated/tinyos/all.h"
+#include "codec/codec_test/every_view.h"
 #include "fuzz/support/every_builder.h"
 #include "fuzz/support/require.h"
 
@@ -15,51 +13,6 @@ namespace {
 using namespace rubric;
 using fuzz::require;
 
-// clang-format off
-#define RUBRIC_EACH_STRUCTURE(F)                                                                  \
-  F(tinyos, AmHeader) F(tinyos, MacAck) F(tinyos, MacHeader) F(tinyos, SerialFrame)               \
-  F(tinyos, SfPacket) F(rubicon, AckJoin) F(rubicon, AppMsg) F(rubicon, AppMsgFromPc)             \
-  F(rubicon, BroadcastCmd) F(rubicon, Command) F(rubicon, Complete) F(rubicon, Config)            \
-  F(rubicon, Connless) F(rubicon, Data) F(rubicon, Demo) F(rubicon, DemoData)                     \
-  F(rubicon, JoinReply) F(rubicon, JoinRequest) F(rubicon, LearningModuleCmd)                     \
-  F(rubicon, LearningModuleDown) F(rubicon, LearningModuleFloatCmd)                               \
-  F(rubicon, LearningNotification) F(rubicon, LearningOutput) F(rubicon, MoteDesc)                \
-  F(rubicon, NetCommand) F(rubicon, NetData) F(rubicon, NetMsg) F(rubicon, NetidCmd)              \
-  F(rubicon, RAddr) F(rubicon, RadioIFrame) F(rubicon, RadioTFrame) F(rubicon, ReadUpdates)       \
-  F(rubicon, RssiBeacon) F(rubicon, Rubicon) F(rubicon, RubiconAck)                               \
-  F(rubicon, RubiconAckSeqOnly) F(rubicon, SerialData) F(rubicon, SerialJoined)                   \
-  F(rubicon, SynCreateCmd) F(rubicon, SynapticData) F(rubicon, TransducerUpdate)                  \
-  F(rubicon, Updates) F(oscilloscope, Oscilloscope) F(oscilloscope, OscilloscopeMsg)              \
-  F(oscilloscope, RadioIFrame) F(oscilloscope, RadioTFrame)
-#define RUBRIC_EACH_PAYLOAD(F)                                                                    \
-  F(ack_join, AckJoin) F(app_msg, AppMsg) F(app_msg_from_pc, AppMsgFromPc) F(command, Command)    \
-  F(config, Config) F(join_reply, JoinReply) F(join_request, JoinRequest)                         \
-  F(learning_module_cmd, LearningModuleCmd) F(learning_module_float_cmd, LearningModuleFloatCmd)  \
-  F(net_msg, NetMsg) F(oscilloscope_msg, OscilloscopeMsg) F(rssi_beacon, RssiBeacon)              \
-  F(serial_data, SerialData)
-#define RUBRIC_EACH_BODY(F)                                                                       \
-  F(broadcast_cmd, BroadcastCmd) F(demo, Demo) F(demo_data, DemoData)                             \
-  F(learning_module_cmd, LearningModuleCmd) F(learning_module_down, LearningModuleDown)           \
-  F(learning_module_float_cmd, LearningModuleFloatCmd)                                            \
-  F(learning_notification, LearningNotification) F(learning_output, LearningOutput)               \
-  F(netid_cmd, NetidCmd) F(read_updates, ReadUpdates) F(rubicon_ack, RubiconAck)                  \
-  F(rubicon_ack_seq_only, RubiconAckSeqOnly) F(serial_joined, SerialJoined)                       \
-  F(syn_create_cmd, SynCreateCmd) F(synaptic_data, SynapticData) F(updates, Updates)
-// clang-format on
-
-#define RUBRIC_CHECK_PAYLOAD(name, Name)                     \
-  if constexpr (requires { view.payload_as_##name(); }) {    \
-    if (view.payload_kind() == View::PayloadKind::k##Name) { \
-      check_part(view.payload_as_##name(), view.payload());  \
-    }                                                        \
-  }
-#define RUBRIC_CHECK_BODY(name, Name)                    \
-  if constexpr (requires { view.body_as_##name(); }) {   \
-    if (view.body_kind() == View::BodyKind::k##Name) {   \
-      check_part(view.body_as_##name(), view.payload()); \
-    }                                                    \
-  }
-
 template <class Part>
 void check_part(const Part& part, Bytes bytes) {
   const Result<Part> parsed = Part::parse(bytes);
@@ -67,16 +20,12 @@ void check_part(const Part& part, Bytes bytes) {
 }
 
 template <class View>
-void check_parts(const View& view) {
-  RUBRIC_EACH_PAYLOAD(RUBRIC_CHECK_PAYLOAD)
-  RUBRIC_EACH_BODY(RUBRIC_CHECK_BODY)
-}
-
-template <class View, class Builder>
 void check(Bytes bytes, std::uint8_t before) {
+  using Builder = typename View::Builder;
   const Result<View> view = View::parse(bytes);
   if (!view) return;
-  check_parts(*view);
+  const auto part = [](Bytes of, const auto& inner) { check_part(inner, of); };
+  visit_parts(*view, part);
   std::vector<std::uint8_t> room(view->bytes().size(), before);
   const MutableBytes whole(room.data(), room.size());
   for (std::size_t n = 0; n < View::kMinSizeBytes; ++n) {
@@ -114,9 +63,9 @@ void check_mask(std::uint16_t one, std::uint16_t other) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   const Bytes bytes(data, size);
-#define RUBRIC_CHECK(protocol, Name) \
-  check<protocol::Name##View, protocol::Name##Builder>(bytes, data[size - 1]);
-  RUBRIC_EACH_STRUCTURE(RUBRIC_CHECK)
+  for_each_view_of_all([&]<class View>(const std::string&, ViewTag<View>) {
+    check<View>(bytes, data[size - 1]);
+  });
   if (size < 4) return 0;
   check_mask<rubicon::ActuatorMask>(data[0], data[1]);
   check_mask<rubicon::TransducerMask>(load_be16(data), load_be16(data + 2));

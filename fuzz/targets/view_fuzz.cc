@@ -1,5 +1,6 @@
-// Property: for any bytes and every structure `write(parse(x)) == x` for the meant bytes, and the
-// reflection tables find the same fault at the same place by the same rule, or the same values.
+// Property: for any bytes and every structure `write(parse(x)) == x` for the meant bytes, no later
+// byte heals a fault, and the reflection tables find the same fault at the same place by the same
+// rule, or the same values.
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -28,16 +29,25 @@ void written_again(const View& view) {
   require(!small && small.error().fault == Fault::kNoRoom, "write does with no less room");
 }
 
+// Only bytes up to the fault decide about it, unless some are missing.
+template <class View>
+void stays(Bytes bytes, const Error& error) {
+  require(error.offset_bytes <= bytes.size(), "a fault lies within the bytes");
+  if (error.fault == Fault::kTruncated) return;
+  require(error.fault == Fault::kUnexpected || error.fault == Fault::kOutOfRange,
+          "a fault is one of a structure");
+  for (std::size_t n = error.offset_bytes + 1; n < bytes.size(); n += 1 + n / 16) {
+    require(!View::parse(bytes.first(n)), "later bytes do not heal a fault");
+  }
+}
+
 template <class View>
 void check(Bytes bytes, const reflect::Type& type) {
   static reflect::Decoded decoded;
   const Result<View> view = View::parse(bytes);
   reflect::decode(type, bytes, reflect::Tail::kStale, true, decoded);
   require(decoded.error == view.error(), "the tables find the same fault");
-  if (!view) {
-    require(view.error().offset_bytes <= bytes.size(), "a fault lies within the bytes");
-    return;
-  }
+  if (!view) return stays<View>(bytes, view.error());
   reflect::ViewComparer comparer(decoded);
   comparer.structure(*view, 0);
   require(comparer.difference().empty(), comparer.difference().c_str());

@@ -9,11 +9,14 @@
 namespace rubricc::cpp {
 namespace {
 
-const char kView[] = R"(/// A lens on the bytes of <<name>>; copy it like a pointer. Somebody
+const char kView[] = R"(class <<class>>Builder;
+
+/// A lens on the bytes of <<name>>; copy it like a pointer. Somebody
 /// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class <<class>>View {
  public:
   using Value = <<class>>;
+  using Builder = <<class>>Builder;
   static constexpr size_t kMinSizeBytes = <<min>>;
   static constexpr size_t kMaxSizeBytes = <<max>>;
   <<kinds?>>
