@@ -10,66 +10,25 @@ using namespace rubric::rubicon;
 
 #define MOTE_USE extern "C" __attribute__((noinline, used))
 
-MOTE_USE bool join_request_parse(const uint8_t* p, size_t n, JoinRequest& out) {
-  const Result<JoinRequestView> view = JoinRequestView::parse(Bytes(p, n));
-  if (!view) return false;
-  out = view->to_value();
-  return true;
-}
-MOTE_USE size_t join_request_write(const JoinRequest& value, uint8_t* p, size_t n) {
-  const Result<MutableBytes> out = write(value, MutableBytes(p, n));
-  return out ? out->size() : 0;
-}
-MOTE_USE bool join_reply_parse(const uint8_t* p, size_t n, JoinReply& out) {
-  const Result<JoinReplyView> view = JoinReplyView::parse(Bytes(p, n));
-  if (!view) return false;
-  out = view->to_value();
-  return true;
-}
-MOTE_USE size_t join_reply_write(const JoinReply& value, uint8_t* p, size_t n) {
-  const Result<MutableBytes> out = write(value, MutableBytes(p, n));
-  return out ? out->size() : 0;
-}
-MOTE_USE bool ack_join_parse(const uint8_t* p, size_t n, AckJoin& out) {
-  const Result<AckJoinView> view = AckJoinView::parse(Bytes(p, n));
-  if (!view) return false;
-  out = view->to_value();
-  return true;
-}
-MOTE_USE size_t ack_join_write(const AckJoin& value, uint8_t* p, size_t n) {
-  const Result<MutableBytes> out = write(value, MutableBytes(p, n));
-  return out ? out->size() : 0;
-}
-MOTE_USE bool net_msg_parse(const uint8_t* p, size_t n, NetMsg& out) {
-  const Result<NetMsgView> view = NetMsgView::parse(Bytes(p, n));
-  if (!view) return false;
-  out = view->to_value();
-  return true;
-}
-MOTE_USE size_t net_msg_write(const NetMsg& value, uint8_t* p, size_t n) {
-  const Result<MutableBytes> out = write(value, MutableBytes(p, n));
-  return out ? out->size() : 0;
-}
-MOTE_USE bool app_msg_parse(const uint8_t* p, size_t n, AppMsg& out) {
-  const Result<AppMsgView> view = AppMsgView::parse(Bytes(p, n));
-  if (!view) return false;
-  out = view->to_value();
-  return true;
-}
-MOTE_USE size_t app_msg_write(const AppMsg& value, uint8_t* p, size_t n) {
-  const Result<MutableBytes> out = write(value, MutableBytes(p, n));
-  return out ? out->size() : 0;
-}
-MOTE_USE bool rubicon_ack_parse(const uint8_t* p, size_t n, RubiconAck& out) {
-  const Result<RubiconAckView> view = RubiconAckView::parse(Bytes(p, n));
-  if (!view) return false;
-  out = view->to_value();
-  return true;
-}
-MOTE_USE size_t rubicon_ack_write(const RubiconAck& value, uint8_t* p, size_t n) {
-  const Result<MutableBytes> out = write(value, MutableBytes(p, n));
-  return out ? out->size() : 0;
-}
+#define MOTE_USES(name, Name)                                                     \
+  MOTE_USE bool name##_parse(const uint8_t* p, size_t n, Name& out) {             \
+    const Result<Name##View> view = Name##View::parse(Bytes(p, n));               \
+    if (!view) return false;                                                      \
+    out = view->to_value();                                                       \
+    return true;                                                                  \
+  }                                                                               \
+  MOTE_USE size_t name##_write(const Name& value, uint8_t* p, size_t n) {         \
+    const Result<MutableBytes> out = write(value, MutableBytes(p, n));            \
+    return out ? out->size() : 0;                                                 \
+  }
+
+MOTE_USES(join_request, JoinRequest)
+MOTE_USES(join_reply, JoinReply)
+MOTE_USES(ack_join, AckJoin)
+MOTE_USES(net_msg, NetMsg)
+MOTE_USES(app_msg, AppMsg)
+MOTE_USES(rubicon_ack, RubiconAck)
+
 // Returns only whether a message is for this mote, and its number.
 MOTE_USE uint16_t net_msg_view(const uint8_t* p, size_t n, uint16_t devid) {
   const Result<NetMsgView> view = NetMsgView::parse(Bytes(p, n));

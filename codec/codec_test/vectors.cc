@@ -7,25 +7,15 @@
 #include <set>
 #include <stdexcept>
 
+#include "codec/reflect/encode.h"
+
 namespace rubric {
 namespace {
 
-int digit(char c) {
-  if (c >= '0' && c <= '9') return c - '0';
-  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
-  throw std::runtime_error("not a hex digit");
-}
-
-std::vector<std::uint8_t> bytes_of(const std::string& hex) {
-  std::vector<int> digits;
-  for (const char c : hex) {
-    if (c != ' ' && c != '\n') digits.push_back(digit(c));
-  }
-  if (digits.size() % 2 != 0) throw std::runtime_error("half a byte");
+std::vector<std::uint8_t> bytes_of(std::string hex) {
+  std::erase(hex, '\n');
   std::vector<std::uint8_t> out;
-  for (std::size_t i = 0; i < digits.size(); i += 2) {
-    out.push_back(static_cast<std::uint8_t>(digits[i] * 16 + digits[i + 1]));
-  }
+  if (!reflect::parse_hex(hex, out)) throw std::runtime_error("not bytes in hex");
   return out;
 }
 
@@ -37,7 +27,7 @@ std::string value_of(const YAML::Node& node) {
   }
   if (node.Tag() == "!") {  // Quoted or folded: opaque bytes.
     std::string hex = node.Scalar();
-    hex.erase(std::remove(hex.begin(), hex.end(), ' '), hex.end());
+    std::erase(hex, ' ');
     return "x" + hex;
   }
   return canonical(node.Scalar());

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "codec/codec_test/every_view.h"
+#include "codec/containers/test/testing.h"
 #include "tools/tests/readme/number.h"
 
 namespace rubric {
@@ -35,12 +36,7 @@ class Dump {
       return std::to_string(static_cast<long long>(value));
     }
   }
-  void add(const std::string& path, Bytes value) {
-    static const char* const kDigits = "0123456789abcdef";
-    std::string hex = "x";
-    for (const uint8_t byte : value) hex += {kDigits[byte >> 4], kDigits[byte & 15]};
-    fields[path] = hex;
-  }
+  void add(const std::string& path, Bytes value) { fields[path] = "x" + testing::to_hex(value); }
   template <class T>
   void add(const std::string& path, const T& value) {
     if constexpr (requires { T::kMinSizeBytes; }) {

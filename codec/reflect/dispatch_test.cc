@@ -15,6 +15,7 @@
 #include "codec/generate/values.h"
 #include "codec/generated/rubicon/messages.h"
 #include "codec/reflect/compare_view.h"
+#include "codec/runtime/hdlc.h"
 #include "tools/tests/made_inputs.h"
 #include "tools/tests/readme/number.h"
 

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "codec/containers/test/testing.h"
 #include "codec/reflect/toy_tables.h"
 
 namespace rubric::reflect {
@@ -42,22 +43,13 @@ Value changed(const Value& fields, const Pairs& changes) {
   return result;
 }
 
-std::string hex(const std::vector<std::uint8_t>& bytes) {
-  std::string text;
-  for (const std::uint8_t byte : bytes) {
-    text += "0123456789abcdef"[byte >> 4];
-    text += "0123456789abcdef"[byte & 15];
-  }
-  return text;
-}
-
 std::string encoded(const Type& type, const Value& fields, std::string_view stale = "",
                     Tail tail = Tail::kFault) {
   std::vector<std::uint8_t> stale_bytes;
   EXPECT_TRUE(parse_hex(stale, stale_bytes));
   std::vector<std::uint8_t> out;
   encode(type, fields, Bytes(stale_bytes.data(), stale_bytes.size()), tail, out);
-  return hex(out);
+  return rubric::testing::to_hex(Bytes(out.data(), out.size()));
 }
 
 // Returns the bytes or "path: problem".

@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "codec/containers/test/testing.h"
 #include "codec/reflect/decode.h"
 #include "fuzz/support/require.h"
 #include "tools/encode/members.h"
@@ -35,12 +36,8 @@ inline void check_json(std::string_view text, const format::Record& record) {
   require(member("schema").text == "rubric.decode/1", "a line says what it is");
   require(member("error").is(reflect::Value::Kind::kNull) == !record.frame->has_error(),
           "a line says what is malformed");
-  std::string hex;
-  for (const std::uint8_t byte : record.packet().bytes) {
-    hex += "0123456789abcdef"[byte >> 4];
-    hex += "0123456789abcdef"[byte & 15];
-  }
-  require(member("raw").text == hex, "a line holds the packet's bytes");
+  require(member("raw").text == testing::to_hex(record.packet().bytes),
+          "a line holds the packet's bytes");
 }
 
 inline void check_text(std::string_view text, bool color) {

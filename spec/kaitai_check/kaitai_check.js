@@ -17,10 +17,10 @@ const {readmeNumber} = require('../../tools/tests/readme/number.js');
 const captures = path.join(__dirname, '..', 'captures');
 // The runs, and their share of COUNT.
 const suites = [
-  {carrier: 'serial', spec: 'rubicon', share: 0.7},
-  {carrier: 'radio_i_frame', spec: 'rubicon', share: 0.15, as: 'RadioIFrame'},
-  {carrier: 'radio_t_frame', spec: 'rubicon', share: 0.1, as: 'RadioTFrame'},
-  {carrier: 'oscilloscope', spec: 'oscilloscope', share: 0.05},
+  {carrier: 'serial', spec: 'rubicon', share: 0.7, real: true},
+  {carrier: 'radio_i', spec: 'rubicon', share: 0.15, as: 'RadioIFrame'},
+  {carrier: 'radio_t', spec: 'rubicon', share: 0.1, as: 'RadioTFrame'},
+  {carrier: 'serial', spec: 'oscilloscope', share: 0.05},
 ];
 
 /// Bytes of the number that a path such as /types/net_msg/seq/3 names.
@@ -104,7 +104,7 @@ async function hold(rubric, suite, frames) {
   const file = path.join(folder, 'frames.hex');
   fs.writeFileSync(file, frames.map((f) => f.bytes.toString('hex') + '\n').join(''));
   const args = ['decode', '--input-format', 'hex', '--format', 'jsonl', '--spec', suite.spec,
-    ...(suite.as ? ['--as', suite.carrier] : []), file];
+    ...(suite.as ? ['--as', `${suite.carrier}_frame`] : []), file];
   const child = spawn(rubric, args, {stdio: ['ignore', 'pipe', 'inherit']});
   const ended = new Promise((resolve) => child.on('close', resolve));
   const result = {index: 0, disagreements: 0, faults: {}, messages: {}};
@@ -113,7 +113,7 @@ async function hold(rubric, suite, frames) {
     const {bytes} = frames[result.index++];
     const what = disagreement(kaitai, bytes, record);
     if (what && ++result.disagreements <= 10) {
-      console.log(`${suite.carrier} frame ${result.index}: ${what}\n  ${bytes.toString('hex')}`);
+      console.log(`${suite.spec} ${suite.carrier} frame ${result.index}: ${what}\n  ${bytes.toString('hex')}`);
     }
     count(result.faults, record.error ? record.error.fault : 'accepted');
     if (!record.error) count(result.messages, record.message);
@@ -125,12 +125,12 @@ async function hold(rubric, suite, frames) {
 
 /// Runs one suite and says what came of it; whether it is good.
 async function run(rubric, suite, total, seed, mutated) {
-  const frames = makeFrames(suite.carrier, captures, Math.round(total * suite.share), seed);
+  const frames = makeFrames(rubric, suite, captures, Math.round(total * suite.share), seed);
   const origins = census(frames, mutated);
   const result = await hold(rubric, suite, frames);
   const rejected = result.index - (result.faults.accepted || 0);
   const share = (100 * rejected / result.index).toFixed(1);
-  console.log(`${suite.carrier}: ${result.index} frames, ${JSON.stringify(origins)}, ` +
+  console.log(`${suite.spec} ${suite.carrier}: ${result.index} frames, ${JSON.stringify(origins)}, ` +
       `rejected ${rejected} (${share} %); seed ${seed}`);
   console.log('  by fault:', JSON.stringify(result.faults));
   console.log('  by message:', JSON.stringify(result.messages));

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "codec/reflect/encode.h"
 #include "codec/reflect/frame.h"
 #include "codec/reflect/registry.h"
 #include "tools/format/record.h"
@@ -16,17 +17,7 @@ inline const reflect::Protocol& rubicon() { return *reflect::find_protocol("rubi
 /// Returns the bytes of hex digits; skips blanks.
 inline std::vector<std::uint8_t> from_hex(std::string_view hex) {
   std::vector<std::uint8_t> bytes;
-  int high = -1;
-  for (const char c : hex) {
-    if (c == ' ') continue;
-    const int digit = c <= '9' ? c - '0' : (c | 0x20) - 'a' + 10;
-    if (high < 0) {
-      high = digit;
-    } else {
-      bytes.push_back(static_cast<std::uint8_t>(high << 4 | digit));
-      high = -1;
-    }
-  }
+  reflect::parse_hex(hex, bytes);
   return bytes;
 }
 
