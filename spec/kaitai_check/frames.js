@@ -1,5 +1,5 @@
 // Makes frames to compare both decoders on: real ones, and those that `rubric generate` makes of
-// every message, sound and broken; mutated where parsers go wrong. Seeded, so a run can be repeated.
+// every message, sound and broken; most are mutated. Seeded, so a run can be repeated.
 'use strict';
 const fs = require('fs');
 const path = require('path');

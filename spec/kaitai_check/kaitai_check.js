@@ -23,6 +23,8 @@ const suites = [
   {carrier: 'serial', spec: 'oscilloscope', share: 0.05},
 ];
 
+const nameOf = ({spec, carrier}) => `${spec} ${carrier}`;
+
 /// Bytes of the number that a path such as /types/net_msg/seq/3 names.
 function widthAt(specs, srcPath) {
   for (const spec of specs) {
@@ -113,7 +115,7 @@ async function hold(rubric, suite, frames) {
     const {bytes} = frames[result.index++];
     const what = disagreement(kaitai, bytes, record);
     if (what && ++result.disagreements <= 10) {
-      console.log(`${suite.spec} ${suite.carrier} frame ${result.index}: ${what}\n  ${bytes.toString('hex')}`);
+      console.log(`${nameOf(suite)} frame ${result.index}: ${what}\n  ${bytes.toString('hex')}`);
     }
     count(result.faults, record.error ? record.error.fault : 'accepted');
     if (!record.error) count(result.messages, record.message);
@@ -130,7 +132,7 @@ async function run(rubric, suite, total, seed, mutated) {
   const result = await hold(rubric, suite, frames);
   const rejected = result.index - (result.faults.accepted || 0);
   const share = (100 * rejected / result.index).toFixed(1);
-  console.log(`${suite.spec} ${suite.carrier}: ${result.index} frames, ${JSON.stringify(origins)}, ` +
+  console.log(`${nameOf(suite)}: ${result.index} frames, ${JSON.stringify(origins)}, ` +
       `rejected ${rejected} (${share} %); seed ${seed}`);
   console.log('  by fault:', JSON.stringify(result.faults));
   console.log('  by message:', JSON.stringify(result.messages));
