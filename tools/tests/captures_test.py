@@ -7,14 +7,12 @@ capture say, and exactly the frames that were made bad on purpose must be malfor
 
 import json
 import pathlib
-import subprocess
-import sys
 import unittest
 
 from readme.number import readme_number
+from testing import FIRMWARE, run
 
 CAPTURES = pathlib.Path("spec/captures")
-FIRMWARE = CAPTURES / "firmware"
 BASE_STATION = CAPTURES / "basestation"
 
 # File: (index, fault, offset in raw, requirement) of each malformed frame; all others have none.
@@ -43,14 +41,10 @@ MALFORMED = {
     ],
 }
 
-RUBRIC = None
-
-
 def decode(path):
     """The exit code and the lines, parsed."""
-    run = subprocess.run([RUBRIC, "decode", str(path), "--format", "jsonl"], capture_output=True,
-                         check=False)
-    return run.returncode, [json.loads(line) for line in run.stdout.decode("utf-8").splitlines()]
+    done = run("decode", path, "--format", "jsonl")
+    return done.returncode, [json.loads(line) for line in done.stdout.splitlines()]
 
 
 def rows(path):
@@ -165,5 +159,4 @@ class Captures(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    RUBRIC = sys.argv.pop(1)
     unittest.main()

@@ -7,25 +7,18 @@ Usage: chart_test.py RUBRIC, in the project's folder.
 import concurrent.futures
 import pathlib
 import re
-import subprocess
-import sys
 import tempfile
 import unittest
 import xml.etree.ElementTree
 
-RUBRIC = str(pathlib.Path(sys.argv.pop(1)).resolve())
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+from testing import ROOT, run
+
 SVG = "{http://www.w3.org/2000/svg}"
 LABEL, SMALL = 7.3, 6.7  # Pixels a character, as the picture counts them.
 
 
-def rubric(*words):
-    return subprocess.run([RUBRIC, *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                          text=True, timeout=300, check=False)
-
-
 def chart(*words):
-    return rubric("chart", *words)
+    return run("chart", *words, text=True)
 
 
 def picture(case):
@@ -60,10 +53,10 @@ class EveryCase(unittest.TestCase):
 
     @classmethod
     def setUpClass(cls):
-        listed = rubric("test", "--list", "--format", "json").stdout
+        listed = run("test", "--list", "--format", "json", text=True).stdout
         cls.cases = re.findall(r'"name": ?"([^"]+)"', listed)
         with tempfile.TemporaryDirectory() as folder:
-            rubric("test", "--target", "machine", "--report", folder, "--quiet")
+            run("test", "--target", "machine", "--report", folder, "--quiet")
             cls.logs = {}
             for path in pathlib.Path(folder).rglob("*.rtr"):
                 text = path.read_text()

@@ -5,23 +5,13 @@ Usage: check_align_test.py RUBRIC in the project's folder.
 """
 
 import json
-import pathlib
 import re
 import struct
-import subprocess
-import sys
-import tempfile
 import unittest
 
-RUBRIC = sys.argv.pop(1)
-FIRMWARE = pathlib.Path("spec/captures/firmware")
+from testing import FIRMWARE, Folder, rubric
+
 EPOCH_S = 1_500_000_000
-
-
-def rubric(*args):
-    """Exit code and stdout."""
-    done = subprocess.run([RUBRIC, *map(str, args)], capture_output=True, check=False)
-    return done.returncode, done.stdout.decode()
 
 
 def report(*args):
@@ -47,13 +37,9 @@ def names(one):
                   for f in one["findings"])
 
 
-class Apart(unittest.TestCase):
-    def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()  # pylint: disable=consider-using-with
-        self.addCleanup(self.folder.cleanup)
-
+class Apart(Folder):
     def path(self, name):
-        return pathlib.Path(self.folder.name) / name
+        return self.folder / name
 
     def split(self, capture, ahead_s):
         """The air by the clock of a computer, the line by that of another one."""

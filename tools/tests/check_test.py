@@ -13,13 +13,12 @@ import re
 import shlex
 import subprocess
 import sys
-import tempfile
 import unittest
 import xml.etree.ElementTree
 
-RUBRIC = sys.argv.pop(1)
+from testing import FIRMWARE, RUBRIC, Folder as AnyFolder, rubric
+
 REGENERATE = "--regenerate" in sys.argv and (sys.argv.remove("--regenerate") or True)
-FIRMWARE = pathlib.Path("spec/captures/firmware")
 BASESTATION = pathlib.Path("spec/captures/basestation")
 EXPECT = pathlib.Path("tools/tests/expect")
 WRONG_SEQ = FIRMWARE / "g2_stray_reply_while_joining.pcapng"
@@ -33,13 +32,6 @@ GOLDEN = {
 }
 FINDING_KEYS = ["requirement", "level", "sentence", "severity", "time", "file", "frame", "offset",
                 "node", "text", "expected", "count", "last_frame", "known", "hypotheses"]
-
-
-def rubric(*args, stdin=b"", env=None):
-    """Exit code, stdout, stderr as text."""
-    done = subprocess.run([RUBRIC, *map(str, args)], input=stdin, capture_output=True,
-                          env={**os.environ, **(env or {})})
-    return done.returncode, done.stdout.decode(), done.stderr.decode()
 
 
 def check(*args, **more):
@@ -62,12 +54,7 @@ def capture_files():
         sorted(BASESTATION.glob("*.sfstream"))
 
 
-class Folder(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-
+class Folder(AnyFolder):
     def write(self, name, text):
         path = self.folder / name
         path.write_bytes(text if isinstance(text, bytes) else text.encode())

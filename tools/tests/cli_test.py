@@ -9,14 +9,13 @@ import datetime
 import io
 import json
 import os
-import pathlib
 import pty
 import subprocess
-import sys
 import tempfile
 import unittest
 
-FIRMWARE = pathlib.Path("spec/captures/firmware")
+from testing import FIRMWARE, RUBRIC, run
+
 JOIN = FIRMWARE / "a_join_data.pcapng"
 SERIAL = FIRMWARE / "a_join_data.serial.bin"
 BAD = FIRMWARE / "h10_hdlc_escape_and_bad_serial.serial_in.bin"
@@ -24,16 +23,9 @@ PLAIN = FIRMWARE / "b_reliable.serial.bin"
 CLEAN, MALFORMED, USAGE, INPUT = 0, 1, 64, 66
 OUTPUT = 74
 
-RUBRIC = None
 
-
-def run(*words, stdin=b"", env=None):
-    return subprocess.run([RUBRIC, *map(str, words)], input=stdin, capture_output=True,
-                          check=False, env={**os.environ, **(env or {})})
-
-
-def decode(*words, **more):
-    return run("decode", *words, **more)
+def decode(*words, stdin=b"", **more):
+    return run("decode", *words, input=stdin, **more)
 
 
 def lines(done):
@@ -288,5 +280,4 @@ class Terminals(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    RUBRIC = sys.argv.pop(1)
     unittest.main()

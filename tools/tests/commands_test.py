@@ -9,11 +9,10 @@ import pathlib
 import re
 import struct
 import subprocess
-import sys
-import tempfile
 import unittest
 
-RUBRIC = sys.argv.pop(1)
+from testing import RUBRIC, Folder, run
+
 CAPTURES = pathlib.Path("spec/captures")
 SERIAL = CAPTURES / "firmware/a_join_data.serial.bin"
 PCAPNG = CAPTURES / "firmware/a_join_data.pcapng"
@@ -25,18 +24,9 @@ CONFIG_PACKET = b"00 FF FF 00 00 03 00 25 0A 00 0C\n"
 
 
 def rubric(*args, stdin=b""):
-    """Exit code, stdout, stderr as text."""
-    if isinstance(stdin, str):
-        stdin = stdin.encode()
-    done = subprocess.run([RUBRIC, *map(str, args)], input=stdin, capture_output=True)
+    """Exit code, stdout as bytes, stderr as text."""
+    done = run(*args, input=stdin.encode() if isinstance(stdin, str) else stdin)
     return done.returncode, done.stdout, done.stderr.decode()
-
-
-class Folder(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
 
 
 class Fcs(Folder):

@@ -5,18 +5,13 @@ Usage: completion_test.py RUBRIC. Needs the three shells.
 """
 
 import os
-import pathlib
 import subprocess
-import sys
-import tempfile
 import unittest
 
-RUBRIC = ""
-
+from testing import Folder, run
 
 def script(shell):
-    return subprocess.run([RUBRIC, "completion", shell], capture_output=True, text=True,
-                          check=True).stdout
+    return run("completion", shell, text=True, check=True).stdout
 
 
 def bash(*words):
@@ -29,17 +24,17 @@ def bash(*words):
 
 
 def fish(line, folder):
-    path = pathlib.Path(folder) / "rubric.fish"
+    path = folder / "rubric.fish"
     path.write_text(script("fish"), encoding="utf-8")
     done = subprocess.run(["fish", "--no-config", "-c", f"source {path}; complete -C '{line}'"],
                           capture_output=True, text=True, check=True,
-                          env={**os.environ, "HOME": folder, "TERM": "dumb"})
+                          env={**os.environ, "HOME": str(folder), "TERM": "dumb"})
     return [row.split("\t")[0] for row in done.stdout.splitlines()]
 
 
 def zsh(line, folder):
     """Types the line and a tabulator into a zsh on a terminal of its own; what it then shows."""
-    (pathlib.Path(folder) / "_rubric").write_text(script("zsh"), encoding="utf-8")
+    (folder / "_rubric").write_text(script("zsh"), encoding="utf-8")
     test = f"""
 zmodload zsh/zpty
 zpty -b shell zsh -f -i
@@ -58,11 +53,7 @@ zpty -d shell
                           check=True, env={**os.environ, "TERM": "dumb", "COLUMNS": "200"}).stdout
 
 
-class Completion(unittest.TestCase):
-    def setUp(self):
-        self.folder = tempfile.TemporaryDirectory(prefix="rubric-completion-")
-        self.addCleanup(self.folder.cleanup)
-
+class Completion(Folder):
     def test_bash_completes_commands_options_and_values(self):
         self.assertEqual(bash("rubric", "dec"), ["decode"])
         self.assertEqual(bash("rubric", "decode", "--inp"), ["--input-format"])
@@ -77,42 +68,39 @@ class Completion(unittest.TestCase):
         self.assertEqual(bash("rubric", "decode", "--fields", "frame.rs"), ["frame.rssi"])
         self.assertEqual(bash("rubric", "test", "--requirement", "J4-SE"), ["J4-SEQ"])
         self.assertIn("j4.wrong_seq", bash("rubric", "test", "--cases", "j4.w"))
-        self.assertEqual(fish("rubric explain J4-SE", self.folder.name), ["J4-SEQ"])
-        self.assertIn("J4-SEQ", zsh("rubric explain J4-SE", self.folder.name))
-        self.assertIn("blink_to_radio", zsh("rubric decode --spec bli", self.folder.name))
+        self.assertEqual(fish("rubric explain J4-SE", self.folder), ["J4-SEQ"])
+        self.assertIn("J4-SEQ", zsh("rubric explain J4-SE", self.folder))
+        self.assertIn("blink_to_radio", zsh("rubric decode --spec bli", self.folder))
 
     def test_bash_completes_files(self):
-        (pathlib.Path(self.folder.name) / "run 1.pcapng").touch()
+        (self.folder / "run 1.pcapng").touch()
         before = os.getcwd()
-        os.chdir(self.folder.name)
+        os.chdir(self.folder)
         self.addCleanup(os.chdir, before)
         self.assertEqual(bash("rubric", "decode", "run"), ["run", "1.pcapng"])
 
     def test_fish_completes_commands_options_and_values(self):
-        folder = self.folder.name
-        self.assertEqual(fish("rubric dec", folder), ["decode"])
-        self.assertEqual(fish("rubric decode --inp", folder), ["--input-format"])
-        self.assertEqual(sorted(fish("rubric decode --format ", folder)), ["csv", "jsonl", "text"])
+        self.assertEqual(fish("rubric dec", self.folder), ["decode"])
+        self.assertEqual(fish("rubric decode --inp", self.folder), ["--input-format"])
+        self.assertEqual(sorted(fish("rubric decode --format ", self.folder)),
+                         ["csv", "jsonl", "text"])
 
     def test_zsh_completes_commands_options_and_values(self):
-        folder = self.folder.name
-        self.assertIn("rubric decode", zsh("rubric dec", folder))
-        self.assertIn("--input-format", zsh("rubric decode --inp", folder))
-        shown = zsh("rubric decode --format ", folder)
+        self.assertIn("rubric decode", zsh("rubric dec", self.folder))
+        self.assertIn("--input-format", zsh("rubric decode --inp", self.folder))
+        shown = zsh("rubric decode --format ", self.folder)
         for value in ("text", "jsonl", "csv"):
             self.assertIn(value, shown)
 
     def test_every_command_and_option_of_the_help_is_known(self):
-        help_text = subprocess.run([RUBRIC, "--help"], capture_output=True, text=True,
-                                   check=True).stdout
+        help_text = run("--help", text=True, check=True).stdout
         listed = help_text.split("Subcommands:")[1].split("\n\n")[0].splitlines()
         commands = [row.split()[0] for row in listed if row.startswith("  ") and row[2:3].strip()]
         self.assertIn("decode", commands)
         known = bash("rubric", "")
         for command in commands:
             self.assertIn(command, known)
-            text = subprocess.run([RUBRIC, command, "--help"], capture_output=True, text=True,
-                                  check=True).stdout
+            text = run(command, "--help", text=True, check=True).stdout
             options = [word for row in text.splitlines() if row.startswith("  -")
                        for word in row.split()[0].split(",") if word.startswith("--")]
             known_options = bash("rubric", command, "--")
@@ -121,5 +109,4 @@ class Completion(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    RUBRIC = os.path.abspath(sys.argv.pop(1))
     unittest.main()

@@ -5,14 +5,12 @@ Usage: coverage_test.py RUBRIC PROJECT_FOLDER
 """
 
 import json
-import pathlib
-import subprocess
 import sys
-import tempfile
 import unittest
 
-RUBRIC = sys.argv[1]
-CASES = pathlib.Path(sys.argv[2]) / "conformance/cases"
+from testing import Folder, ROOT, run
+
+CASES = ROOT / "conformance/cases"
 
 ONE_CASE = """%rtr 1
 %profile paper
@@ -24,21 +22,17 @@ case x.request
 
 
 def coverage(folder, *options):
-    return subprocess.run([RUBRIC, "coverage", "--cases", str(folder), *options],
-                          capture_output=True, text=True, check=False)
+    return run("coverage", "--cases", folder, *options, text=True)
 
 
-class Coverage(unittest.TestCase):
+class Coverage(Folder):
     def one_case(self, rule):
-        with tempfile.TemporaryDirectory() as folder:
-            (pathlib.Path(folder) / "x.rtr").write_text(ONE_CASE.format(rule), encoding="utf-8")
-            return coverage(folder, "--format", "json")
+        (self.folder / "x.rtr").write_text(ONE_CASE.format(rule), encoding="utf-8")
+        return coverage(self.folder, "--format", "json")
 
     def test_every_must_has_a_case(self):
         done = coverage(CASES)
-        with tempfile.TemporaryDirectory() as empty:  # Without a checkout.
-            own = subprocess.run([pathlib.Path(RUBRIC).resolve(), "coverage"], cwd=empty,
-                                 capture_output=True, text=True, check=False)
+        own = run("coverage", cwd=self.folder, text=True)  # Without a checkout.
         self.assertEqual((own.returncode, own.stdout), (done.returncode, done.stdout))
         problems = [line for line in done.stdout.splitlines() if line.startswith("problem")]
         self.assertEqual((done.returncode, problems), (0, []), done.stderr)
@@ -71,8 +65,7 @@ class Coverage(unittest.TestCase):
         self.assertIn("J99-NOTHING", done.stdout + done.stderr)
 
     def test_no_cases_are_an_error(self):
-        with tempfile.TemporaryDirectory() as folder:
-            done = coverage(folder)
+        done = coverage(self.folder)
         self.assertEqual(done.returncode, 66)
         self.assertIn("no .rtr file", done.stderr)
 

@@ -3,13 +3,11 @@
 
 import json
 import pathlib
-import subprocess
-import sys
 import tempfile
 import unittest
 
-RUBRIC = sys.argv.pop(1)
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+from testing import ROOT, rubric
+
 LISTS = ROOT / "tools/expect"
 CAPTURES = ROOT / "spec/captures"
 EVENTS = ROOT / "conformance/check/test/testdata"
@@ -21,12 +19,6 @@ BROKEN = {
                 "T3-MATCH T3-ONCE T3-SENDER T3-SUCCESS T3-TIMEOUT",
     "base_station": "N11-NBYTES N11-SHORT N8-INCOMING N8-PEIS T2-BROADCAST T3-TIMEOUT",
 }
-
-
-def rubric(*words):
-    done = subprocess.run([RUBRIC, *map(str, words)], capture_output=True, text=True, cwd=ROOT,
-                          timeout=300, check=False)
-    return done.returncode, done.stdout, done.stderr
 
 
 def machine(name):

@@ -4,24 +4,23 @@
 Usage: files_test.py RUBRIC
 """
 import os
-import pathlib
 import resource
 import shutil
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 import unittest
 
-RUBRIC = sys.argv[1]
-FIRMWARE = pathlib.Path(__file__).resolve().parents[2] / "spec/captures/firmware"
+from testing import RUBRIC, ROOT, Folder, run
+
+FIRMWARE = ROOT / "spec/captures/firmware"
 CAPTURE = FIRMWARE / "a_join_data.pcapng"
 SERIAL = FIRMWARE / "a_join_data.serial.bin"
 OLD = b"an old file\n" * 100
 USAGE, OUTPUT = 64, 74
 PATIENCE_S = 60
-CASE = (FIRMWARE.parents[2] / "conformance/cases/j2.rtr").read_text()
+CASE = (ROOT / "conformance/cases/j2.rtr").read_text()
 
 # Every command that writes a file, which is @.
 WRITERS = (
@@ -51,20 +50,13 @@ def full_disk(size):
     return fill
 
 
-def run(*words, **how):
-    how = {"stdin": subprocess.DEVNULL, **how}
-    return subprocess.run([RUBRIC, *map(str, words)], capture_output=True, check=False,
-                          timeout=PATIENCE_S, **how)
-
-
 def written(words, path):
     return [path if word == "@" else word for word in words]
 
 
-class Files(unittest.TestCase):
+class Files(Folder):
     def setUp(self):
-        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="rubric-files-"))
-        self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
+        super().setUp()
         self.old = self.folder / "old.pcapng"
         self.old.write_bytes(OLD)
 
@@ -231,11 +223,11 @@ class Files(unittest.TestCase):
 
     def test_a_growing_capture_replaces_no_file(self):
         data = SERIAL.read_bytes()
-        done = run("decode", "--write", self.old, input=data, stdin=None)
+        done = run("decode", "--write", self.old, input=data)
         self.assertEqual(done.returncode, USAGE)
         self.assertIn(b"exists; --force replaces it", done.stderr)
         self.assert_untouched("decode")
-        done = run("decode", "--write", self.old, "--force", input=data, stdin=None)
+        done = run("decode", "--write", self.old, "--force", input=data)
         self.assertEqual(done.returncode, 0, done.stderr)
         whole = run("decode", SERIAL).stdout.splitlines()
         self.assertEqual(len(run("decode", self.old).stdout.splitlines()), len(whole))
@@ -244,7 +236,7 @@ class Files(unittest.TestCase):
         data = SERIAL.read_bytes()
         (self.folder / "run.3.pcapng").write_bytes(OLD)
         kept = self.folder / "run.pcapng"
-        done = run("decode", "--write", kept, "--rotate", "2k", input=data, stdin=None)
+        done = run("decode", "--write", kept, "--rotate", "2k", input=data)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual((self.folder / "run.3.pcapng").read_bytes(), OLD)
         parts = [path for path in [kept] + [self.folder / f"run.{i}.pcapng" for i in range(2, 99)]

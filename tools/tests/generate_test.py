@@ -5,14 +5,11 @@ Usage: generate_test.py RUBRIC
 """
 
 import json
-import pathlib
 import struct
-import subprocess
-import sys
-import tempfile
 import unittest
 
-RUBRIC = None
+from testing import Folder, run as run_any
+
 COUNT = 10000
 ENHANCED_PACKET = 6
 COMMENT = 1
@@ -20,7 +17,7 @@ RADIO_MESSAGES = ["ack_join", "join_reply", "join_request", "mac_ack", "rssi_bea
 
 
 def run(*arguments, code=0, **more):
-    done = subprocess.run([RUBRIC, *arguments], capture_output=True, check=False, **more)
+    done = run_any(*arguments, **more)
     assert done.returncode == code, (arguments, done.returncode, done.stderr.decode())
     return done
 
@@ -50,13 +47,8 @@ def comments(data):
     return found
 
 
-class Generate(unittest.TestCase):
+class Generate(Folder):
     maxDiff = 3000
-
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="rubric-generate-")
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
 
     def generate(self, form, *arguments):
         """The file, and its expectations."""
@@ -202,5 +194,4 @@ class Generate(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    RUBRIC = sys.argv.pop(1)
     unittest.main()

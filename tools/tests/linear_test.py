@@ -6,14 +6,14 @@ with the square takes 100 times for each step of 10, so the bounds are far from 
 Usage: linear_test.py RUBRIC
 """
 import os
-import pathlib
 import struct
 import subprocess
 import sys
 import tempfile
 import unittest
 
-RUBRIC = sys.argv[1]
+from testing import RUBRIC, Folder
+
 PARTS = 60
 STEP = 10
 BYTES_MOST = 1.5 * STEP
@@ -100,11 +100,7 @@ def measure(command, path, codes=(0, 1, 3)):
                 usage.ru_maxrss * 1024)
 
 
-class Linear(unittest.TestCase):
-    def setUp(self):
-        self.folder = tempfile.TemporaryDirectory(prefix="rubric-linear-")
-        self.addCleanup(self.folder.cleanup)
-
+class Linear(Folder):
     def grows(self, name, command, inputs, path, codes=(0, 1, 3)):
         """Returns the memory for each of the inputs."""
         before = None
@@ -120,14 +116,14 @@ class Linear(unittest.TestCase):
         return memory
 
     def test_captures(self):
-        path = pathlib.Path(self.folder.name) / "x.pcapng"
+        path = self.folder / "x.pcapng"
         for name, shape in SHAPES.items():
             inputs = [shape(PARTS * STEP ** power) for power in range(3)]
             for command in COMMANDS:
                 self.grows(name, command, inputs, path)
 
     def test_texts(self):
-        path = pathlib.Path(self.folder.name) / "x.rtr"
+        path = self.folder / "x.rtr"
         for name, shape in TEXTS.items():
             inputs = [shape(PARTS * STEP ** power).encode() for power in range(3)]
             for command in TEXT_COMMANDS:
@@ -138,7 +134,7 @@ class Linear(unittest.TestCase):
 
     def test_lines(self):
         """What encodes, and what is encoded."""
-        path = pathlib.Path(self.folder.name) / "x.jsonl"
+        path = self.folder / "x.jsonl"
         good = b'{"message":"join_reply","fields":{"island_addr":11,"mote_addr":5}}\n'
         for name, line in (("messages", good), ("nothing", b"\n"), ("no JSON", b"{{{{\n"),
                            ("deep", b"[" * 40 + b"]" * 40 + b"\n")):

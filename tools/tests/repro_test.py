@@ -9,11 +9,11 @@ import random
 import re
 import subprocess
 import sys
-import tempfile
 import unittest
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-RUBRIC, REPLAY, SEEDS = sys.argv[1:4]
+from testing import ROOT, Folder, rubric as run
+
+REPLAY, SEEDS = sys.argv[1:3]
 
 # Flaws of release 1.0, and the rules that they break, as `rubric explore --help` and the flaws say.
 FLAWS = {
@@ -22,12 +22,6 @@ FLAWS = {
     "misread_acks": {"T3-SUCCESS"},
     "answers_members": {"J2-LISTED"},
 }
-
-
-def run(*words):
-    done = subprocess.run([RUBRIC, *map(str, words)], capture_output=True, text=True, check=False,
-                          cwd=ROOT)
-    return done.returncode, done.stdout, done.stderr
 
 
 def write_seeds(folder):
@@ -45,11 +39,9 @@ def mutants(seeds, count, seed):
         yield bytes(data)
 
 
-class Fuzzed(unittest.TestCase):
+class Fuzzed(Folder):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
+        super().setUp()
         self.seeds = write_seeds(self.folder / "seeds")
 
     def find(self, flaw):
@@ -91,12 +83,7 @@ class Fuzzed(unittest.TestCase):
                 self.assertEqual(run("test", "--target", target, small)[0], 1)
 
 
-class Whole(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-
+class Whole(Folder):
     def test_a_seed_breaks_nothing_and_is_its_case_again(self):
         for seed in write_seeds(self.folder / "seeds")[::40]:
             trace = self.folder / "seed.rtr"
@@ -135,4 +122,4 @@ class Whole(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=[sys.argv[0], *sys.argv[4:]])
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])

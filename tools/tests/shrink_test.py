@@ -1,14 +1,13 @@
 """rubric shrink and rubric diff on broken machines behind rct/1."""
 import contextlib
 import pathlib
-import subprocess
 import sys
 import tempfile
 import unittest
 
-RUBRIC = sys.argv.pop(1)
+from testing import ROOT, Folder, rubric as run
+
 MACHINE = sys.argv.pop(1)
-ROOT = pathlib.Path(__file__).resolve().parents[2]
 CASE = ROOT / "conformance/cases/j4.rtr"
 BROKEN = f"{MACHINE} --mutant wrong_seq_accepted_and_acked_as_it_is"
 
@@ -56,35 +55,27 @@ def moody():
         yield f"{sys.executable} {script}"
 
 
-def run(*words):
-    done = subprocess.run([RUBRIC, *words], capture_output=True, text=True, cwd=ROOT, timeout=120,
-                          check=False)
-    return done.returncode, done.stdout, done.stderr
-
-
-class Shrink(unittest.TestCase):
+class Shrink(Folder):
     def test_a_failing_trace_becomes_a_smaller_golden_trace(self):
-        with tempfile.TemporaryDirectory() as folder:
-            small = f"{folder}/small.rtr"
-            code, out, err = run("shrink", str(CASE), "--target", BROKEN, "--out", small)
-            self.assertEqual((code, out), (0, ""), err)
-            text = pathlib.Path(small).read_text(encoding="utf-8")
-            self.assertIn("case j4.wrong_seq.shrunk", text)
-            lines = [line for line in text.splitlines() if " m5 " in line and line[0] != ";"]
-            self.assertLess(len(lines), 8, text)
-            code, out, err = run("test", "--target", BROKEN, small)
-            self.assertEqual(code, 1, out + err)
-            self.assertIn("J4-SEQ", out)
-            code, out, err = run("test", "--target", "machine", small)
-            self.assertEqual(code, 0, out + err)
+        small = self.folder / "small.rtr"
+        code, out, err = run("shrink", CASE, "--target", BROKEN, "--out", small)
+        self.assertEqual((code, out), (0, ""), err)
+        text = small.read_text(encoding="utf-8")
+        self.assertIn("case j4.wrong_seq.shrunk", text)
+        lines = [line for line in text.splitlines() if " m5 " in line and line[0] != ";"]
+        self.assertLess(len(lines), 8, text)
+        code, out, err = run("test", "--target", BROKEN, small)
+        self.assertEqual(code, 1, out + err)
+        self.assertIn("J4-SEQ", out)
+        code, out, err = run("test", "--target", "machine", small)
+        self.assertEqual(code, 0, out + err)
 
     def test_what_is_made_holds_whatever_number_comes_first(self):
-        with tempfile.TemporaryDirectory() as folder:
-            small = f"{folder}/small.rtr"
-            self.assertEqual(run("shrink", str(CASE), "--target", BROKEN, "--out", small)[0], 0)
-            for seed in ["0", "58392", "58647"]:
-                code, out, err = run("test", "--target", "machine", "--seed", seed, small)
-                self.assertEqual(code, 0, out + err)
+        small = self.folder / "small.rtr"
+        self.assertEqual(run("shrink", CASE, "--target", BROKEN, "--out", small)[0], 0)
+        for seed in ["0", "58392", "58647"]:
+            code, out, err = run("test", "--target", "machine", "--seed", seed, small)
+            self.assertEqual(code, 0, out + err)
 
     def test_profile(self):
         code, out, err = run("shrink", str(ROOT / "conformance/cases/j8.rtr"), "--target",
@@ -94,30 +85,29 @@ class Shrink(unittest.TestCase):
 
     def test_a_seed_is_in_what_is_made(self):
         with moody() as target:
-            self.assertEqual(run("shrink", str(CASE), "--target", target)[0], 3)
-            code, out, err = run("shrink", str(CASE), "--target", target, "--seed", "7")
+            self.assertEqual(run("shrink", CASE, "--target", target)[0], 3)
+            code, out, err = run("shrink", CASE, "--target", target, "--seed", "7")
             self.assertEqual(code, 0, err)
             self.assertIn("%seed 7\n", out)
 
     def test_an_adapter_that_says_yes_to_everything(self):
         """It passes what nobody can pass: what it does otherwise says nothing."""
-        with tempfile.TemporaryDirectory() as folder:
-            liar = pathlib.Path(folder, "liar.py")
-            liar.write_text(LIAR, encoding="utf-8")
-            target = f"{sys.executable} {liar}"
-            for words in [("shrink", str(CASE), "--target", target),
-                          ("diff", "--target", "machine", "--target", target, "--cases", "j4.*")]:
-                code, out, err = run(*words)
-                self.assertEqual((code, out), (2, ""), err)
-                self.assertIn(f"rubric {words[0]}: {target}: canary.mote has to fail", err)
+        liar = self.folder / "liar.py"
+        liar.write_text(LIAR, encoding="utf-8")
+        target = f"{sys.executable} {liar}"
+        for words in [("shrink", CASE, "--target", target),
+                      ("diff", "--target", "machine", "--target", target, "--cases", "j4.*")]:
+            code, out, err = run(*words)
+            self.assertEqual((code, out), (2, ""), err)
+            self.assertIn(f"rubric {words[0]}: {target}: canary.mote has to fail", err)
 
     def test_nothing_to_shrink(self):
-        code, _, err = run("shrink", str(CASE), "--target", "machine")
+        code, _, err = run("shrink", CASE, "--target", "machine")
         self.assertEqual(code, 3)
         self.assertIn("nothing fails", err)
 
     def test_unknown_case(self):
-        code, _, err = run("shrink", str(CASE), "--target", "machine", "--case", "j4.no")
+        code, _, err = run("shrink", CASE, "--target", "machine", "--case", "j4.no")
         self.assertEqual(code, 64)
         self.assertIn("has no case j4.no", err)
 
@@ -126,7 +116,7 @@ class Shrink(unittest.TestCase):
         self.assertEqual(code, 66, err)
 
     def test_an_unknown_target(self):
-        code, _, err = run("shrink", str(CASE), "--target", "exit 3", "--timeout", "2")
+        code, _, err = run("shrink", CASE, "--target", "exit 3", "--timeout", "2")
         self.assertEqual(code, 2, err)
 
 

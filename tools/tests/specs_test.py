@@ -7,12 +7,11 @@ Usage: specs_test.py RUBRIC; run in the project's folder.
 import json
 import pathlib
 import re
-import subprocess
-import sys
 import tempfile
 import unittest
 
-RUBRIC = sys.argv.pop(1)
+from testing import Folder, run
+
 BLINK = "00 FF FF 00 00 04 22 06 00 02 00 01"
 BEACON = "00 FF FF 00 00 01 22 06 07"
 PLAIN = """meta:
@@ -61,7 +60,7 @@ types:
 
 
 def rubric(*args, stdin=""):
-    return subprocess.run([RUBRIC, *args], input=stdin, capture_output=True, text=True, check=False)
+    return run(*args, input=stdin, text=True)
 
 
 def vectors():
@@ -158,12 +157,7 @@ class OtherSpecs(unittest.TestCase):
         self.assertEqual(self.said(BLINK.replace("06", "FA")), "")
 
 
-class File(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-
+class File(Folder):
     def file(self, text, name="plain.ksy"):
         path = self.folder / name
         path.write_text(text, encoding="utf-8")

@@ -12,7 +12,8 @@ import subprocess
 import unittest
 import xml.etree.ElementTree
 
-from test_testing import CASES, HONEST, RUBRIC, Folder, rubric, test
+from test_testing import CASES, HONEST, Folder, rubric, test
+from testing import RUBRIC
 
 
 class Expectations(Folder):

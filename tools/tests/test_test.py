@@ -13,7 +13,8 @@ import subprocess
 import time
 import unittest
 
-from test_testing import CASES, HONEST, RUBRIC, Folder, comes, is_dead, rubric, test
+from test_testing import CASES, HONEST, Folder, comes, is_dead, rubric, test
+from testing import RUBRIC
 
 # A mute adapter. One of two ends when the other is to play node 7, which does so after that end.
 PAIR = """

@@ -1,14 +1,10 @@
 """Helpers of the tests of `rubric test`: the program, and implementations that misbehave."""
 
-import os
 import pathlib
-import subprocess
-import sys
-import tempfile
 import time
-import unittest
 
-RUBRIC = os.path.abspath(sys.argv.pop(1))
+from testing import Folder as AnyFolder, rubric as any_rubric
+
 MOTE = pathlib.Path("conformance/adapters/python")
 HONEST = f"python3 {MOTE}/adapter.py"
 CASES = sum(line.startswith("case ") for path in pathlib.Path("conformance/cases").rglob("*.rtr")
@@ -56,9 +52,7 @@ for line in sys.stdin:
 
 def rubric(*args, env=None, cwd=None):
     """Exit code, stdout, stderr as text."""
-    done = subprocess.run([RUBRIC, *map(str, args)], capture_output=True, cwd=cwd, check=False,
-                          env={**os.environ, "GITHUB_ACTIONS": "", **(env or {})})
-    return done.returncode, done.stdout.decode(), done.stderr.decode()
+    return any_rubric(*args, cwd=cwd, env={"GITHUB_ACTIONS": "", **(env or {})})
 
 
 def test(*args, **more):
@@ -84,11 +78,9 @@ def comes(condition):
     return False
 
 
-class Folder(unittest.TestCase):
+class Folder(AnyFolder):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
+        super().setUp()
         self.fake_program = self.write("fake.py", FAKE)
 
     def write(self, name, text):

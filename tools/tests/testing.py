@@ -1,0 +1,36 @@
+"""Helpers of the tests of commands: the program, which is their first argument, and a folder."""
+
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+RUBRIC = str(pathlib.Path(sys.argv.pop(1)).resolve())
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+FIRMWARE = pathlib.Path("spec/captures/firmware")  # Of the project's folder, where tests run.
+
+
+def run(*words, env=None, **how):
+    """Runs the program to its end; `text` says whether its output is text or bytes."""
+    if "input" not in how:
+        how = {"stdin": subprocess.DEVNULL, **how}
+    how = {"capture_output": True, "check": False, "timeout": 300, **how}
+    return subprocess.run([RUBRIC, *map(str, words)], env={**os.environ, **(env or {})}, **how)
+
+
+def rubric(*words, stdin="", **how):
+    """Exit code, stdout and stderr as text."""
+    data = stdin if isinstance(stdin, bytes) else stdin.encode()
+    done = run(*words, input=data, **how)
+    return done.returncode, done.stdout.decode(), done.stderr.decode()
+
+
+class Folder(unittest.TestCase):
+    """Tests with a folder of their own."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="rubric-")
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
