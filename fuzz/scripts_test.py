@@ -53,7 +53,7 @@ class ScriptsTest(unittest.TestCase):
         self.root = pathlib.Path(folder.name).resolve()
         for name in ("support", "targets"):
             (self.root / "fuzz" / name).mkdir(parents=True)
-        for name in ("run", "smoke", "minimize", "support/targets.py", "support/sancov.py"):
+        for name in ("run", "smoke", "minimize", "support/targets.py"):
             shutil.copy2(FUZZ / name, self.root / "fuzz" / name)
         (self.root / "fuzz/targets/deep_fuzz.cc").write_text(TARGET, encoding="utf-8")
         self.corpus = self.root / "fuzz/corpora/deep"
@@ -141,7 +141,7 @@ class ScriptsTest(unittest.TestCase):
         added = set(names) - {"start.txt", "named.txt", "bug-old.txt"}
         self.assertTrue(added)
         for name in added:
-            self.assertRegex(name, r"^found-(first|second|third)(-\d)?\.txt$")
+            self.assertRegex(name, r"^found-[0-9a-f]{8}\.txt$")
         again = self.script("minimize", "deep", "--build", build)
         self.assertNotIn("added", again.stdout)
         self.assertEqual(self.names(), names)
