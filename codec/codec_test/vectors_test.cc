@@ -1,4 +1,5 @@
-// The generated views against spec/vectors: bytes and their meaning, decided without them.
+// The generated views and the tables against spec/vectors: bytes and their meaning, decided without
+// them.
 #include "codec/codec_test/vectors.h"
 
 #include <gtest/gtest.h>
@@ -10,6 +11,8 @@
 
 #include "codec/codec_test/every_view.h"
 #include "codec/containers/test/testing.h"
+#include "codec/reflect/decode.h"
+#include "codec/reflect/registry.h"
 #include "tools/tests/readme/number.h"
 
 namespace rubric {
@@ -83,6 +86,12 @@ template <class View>
 void check(const Vector& vector) {
   const Bytes bytes(vector.bytes.data(), vector.bytes.size());
   const Result<View> view = View::parse(bytes);
+  const std::size_t dot = vector.message.find('.');
+  const reflect::Protocol& spec = *reflect::find_spec(vector.message.substr(0, dot));
+  reflect::Decoded decoded;
+  reflect::decode(*reflect::find_type(spec, vector.message.substr(dot + 1)), bytes,
+                  reflect::Tail::kStale, true, decoded);
+  EXPECT_EQ(decoded.error, view.error());
   if (vector.fault) {
     ASSERT_FALSE(view.has_value());
     EXPECT_EQ(name_of(view.error().fault), vector.fault->kind);

@@ -49,39 +49,6 @@ TEST(View, BodiesAreInterpretedInOrder) {
   EXPECT_EQ(values, (std::vector<std::uint16_t>{1000, 4095}));
 }
 
-struct BodyCase {
-  const char* name;
-  std::vector<std::uint8_t> app_msg;
-  AppMsgView::BodyKind kind;
-};
-TEST(View, BodyKindsOfAMote) {
-  using Kind = AppMsgView::BodyKind;
-  const BodyCase kCases[] = {
-      {"Joined", {3, 10, 16, 0, 11, 0, 2, 1, 0x6f, 0x52, 1}, Kind::kSerialJoined},
-      {"JoinedCut", {3, 10, 16, 0, 11, 0, 2, 1, 0x6f, 0x52}, Kind::kOpaque},
-      {"NoBody", {3, 10}, Kind::kOpaque},
-      {"UnknownType", {3, 10, 99, 1}, Kind::kOpaque},
-      {"UpdatesTooMany", {3, 10, 35, 25, 1, 2, 3, 4}, Kind::kOpaque},
-      {"UpdatesNone", {3, 10, 35, 0}, Kind::kUpdates},
-      {"Demo", {3, 5, 1, 0, 1, 0, 9}, Kind::kDemo},
-      {"ReadUpdatesOfMockup", {3, 5, 36, 0, 1, 0, 9}, Kind::kReadUpdates},
-      {"Notification", {3, 6, 23, 1, 2, 0}, Kind::kLearningNotification},
-      {"AckOfRelease", {9, 6, 23, 1, 2, 0}, Kind::kRubiconAck},
-      {"AckOfPaper", {9, 6, 1, 2}, Kind::kRubiconAckSeqOnly},
-      {"AckTooShort", {9, 6, 1}, Kind::kOpaque},
-      {"Synaptic", {1, 11, 0, 0, 0x80, 0x3f}, Kind::kSynapticData},
-      {"SynapticNothing", {1, 11}, Kind::kSynapticData},
-      {"SynapticCut", {1, 11, 0, 0, 0x80}, Kind::kOpaque},
-      {"Stream", {2, 11, 35, 0}, Kind::kOpaque},
-  };
-  for (const BodyCase& c : kCases) {
-    SCOPED_TRACE(c.name);
-    const auto view = AppMsgView::parse(Bytes(c.app_msg.data(), c.app_msg.size()));
-    ASSERT_TRUE(view.has_value());
-    EXPECT_EQ(view->body_kind(), c.kind);
-  }
-}
-
 TEST(View, TheSenderDecidesWhatALearningCodeMeans) {
   std::uint8_t frame[] = {0, 11, 0, 2, 0, 11, 0xff, 0xfd, 0, 0, 1, 7, 3, 6, 24, 0, 5, 0, 6};
   const NetMsgView from_pc = *NetMsgView::parse(frame);

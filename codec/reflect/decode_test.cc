@@ -72,55 +72,6 @@ TEST(Decode, Updates_PathNestingAndStaleBytesOnBothLevels) {
   EXPECT_EQ((*m)[m->child(second, "value")].value, 0x04b2);
 }
 
-struct RejectCase {
-  const char* name;
-  const char* message;
-  std::string hex;
-  Error error;
-};
-
-const RejectCase kRejects[] = {
-    {"Empty_Join", "join_request", "", {Fault::kTruncated, 0, "WIRE-JOIN-REQUEST"_rule}},
-    {"OneShort_JoinReply",
-     "join_reply",
-     "000b 0002 0000 0000 c4",
-     {Fault::kTruncated, 9, "WIRE-JOIN-REPLY"_rule}},
-    {"Reliable2",
-     "net_msg",
-     "000b fffd 000b 0002 02 b0d3 02 030a",
-     {Fault::kOutOfRange, 8, "WIRE-NET-RELIABLE"_rule}},
-    {"Nbytes1", "net_msg", kNetToSink + "01 03", {Fault::kOutOfRange, 11, "WIRE-NET-NBYTES"_rule}},
-    {"Nbytes103",
-     "net_msg",
-     kNetToSink + "67 03",
-     {Fault::kOutOfRange, 11, "WIRE-NET-NBYTES"_rule}},
-    {"NbytesMoreThanArrived",
-     "net_msg",
-     kNetToSink + "05 030a 2300",
-     {Fault::kTruncated, 16, "WIRE-NET-PAYLOAD"_rule}},
-    {"Updates25", "updates", "23 19", {Fault::kOutOfRange, 1, "WIRE-UPDATES"_rule}},
-    {"UpdatesPairCut",
-     "updates",
-     "23 02 0001 012e 0040",
-     {Fault::kTruncated, 8, "WIRE-UPDATES"_rule}},
-    {"SynapticPartialFloat",
-     "synaptic_data",
-     "0000803f 0000",
-     {Fault::kTruncated, 6, "WIRE-SYNAPTIC-DATA"_rule}},
-};
-
-class DecodeReject : public ::testing::TestWithParam<RejectCase> {};
-
-TEST_P(DecodeReject, NamesFaultPlaceAndRule) {
-  const Message m(GetParam().message, GetParam().hex);
-  EXPECT_EQ(m->error.fault, GetParam().error.fault);
-  EXPECT_EQ(m->error.offset_bytes, GetParam().error.offset_bytes);
-  EXPECT_EQ(m->error.requirement, GetParam().error.requirement);
-}
-
-INSTANTIATE_TEST_SUITE_P(All, DecodeReject, ::testing::ValuesIn(kRejects),
-                         [](const auto& row) { return row.param.name; });
-
 struct BodyCase {
   const char* name;
   std::string hex;
@@ -148,6 +99,16 @@ const BodyCase kBodies[] = {
      "net_msg app_msg learning_notification", 0, NoteKind::kUnknownMessage},
     {"Learning23_FromThePc", "000b 0002 000b fffd 00 b0d3 07 0306 17 0001 0002",
      "net_msg app_msg netid_cmd", 0, NoteKind::kUnknownMessage},
+    {"JoinedCut", kNetToSink + "0a 030a 10 000b 0002 01 6f52", "net_msg app_msg", 1,
+     NoteKind::kDoesNotFit},
+    {"UpdatesTooMany", kNetToSink + "08 030a 23 19 01020304", "net_msg app_msg", 1,
+     NoteKind::kDoesNotFit},
+    {"UpdatesNone", kNetToSink + "04 030a 23 00", "net_msg app_msg updates", 0,
+     NoteKind::kUnknownMessage},
+    {"AckTooShort", kNetToSink + "03 0906 01", "net_msg app_msg", 1, NoteKind::kDoesNotFit},
+    {"SynapticCut", kNetToSink + "05 010b 000080", "net_msg app_msg", 1, NoteKind::kDoesNotFit},
+    {"SynapticNothing", kNetToSink + "02 010b", "net_msg app_msg synaptic_data", 0,
+     NoteKind::kUnknownMessage},
     {"Synaptic", kNetToSink + "0a 010b 0000803f 00000040", "net_msg app_msg synaptic_data", 0,
      NoteKind::kUnknownMessage},
 };

@@ -1,6 +1,7 @@
 // The message in a frame is decided twice: by the tables and by the generated views (those of the
 // carriers, payload_kind(), body_kind()). Over all captured frames and many made ones both must
 // choose the same messages, refuse the same frames, and read the same values.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -77,12 +78,6 @@ class Follower {
   std::vector<std::string> path_;
 };
 
-std::string joined(const std::vector<std::string>& path) {
-  std::string out;
-  for (const std::string& id : path) out += (out.empty() ? "" : "/") + id;
-  return out;
-}
-
 struct Tally {
   long frames = 0;
   long refused = 0;
@@ -114,10 +109,13 @@ std::string difference(const char* carrier, Bytes frame, Tally& tally) {
   if (!follower.comparer().difference().empty()) return follower.comparer().difference();
   std::vector<std::string> path{type->id};
   for (std::size_t i = 0; i < decoded.path_count(); ++i) path.push_back(decoded.path()[i]->id);
-  if (follower.path() != path) return joined(follower.path()) + ", not " + joined(path);
+  const std::string chosen = fmt::format("{}", fmt::join(path, "/"));
+  if (follower.path() != path) {
+    return fmt::format("{}, not {}", fmt::join(follower.path(), "/"), chosen);
+  }
   tally.numbers += follower.comparer().numbers();
   tally.elements += follower.comparer().elements();
-  ++tally.chosen[joined(path)];
+  ++tally.chosen[chosen];
   return "";
 }
 

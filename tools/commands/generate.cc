@@ -49,16 +49,6 @@ Json number_json(const generate::NumberAt& number) {
   return Json::object({{"field", field}, {"offset", number.offset_bytes}, {"value", number.value}});
 }
 
-/// Joins the words with `between`.
-std::string joined(const std::vector<std::string>& words, std::string_view between) {
-  std::string text;
-  for (const std::string& word : words) {
-    if (!text.empty()) text += between;
-    text += word;
-  }
-  return text;
-}
-
 /// Returns the JSON line of a frame, schema rubric.generate/1, without its end. `offset`: where it
 /// begins in its file, or null.
 std::string expectation(std::uint64_t number, const std::string& offset, const Framed& framed,
@@ -252,7 +242,7 @@ class Run {
     });
     if (!left_out.empty()) {
       report::print(stderr, "rubric: {} holds no radio frames: left out {}\n", options_.format,
-                    joined(left_out, ", "));
+                    fmt::join(left_out, ", "));
     }
     if (options_.count < messages_.size()) {
       report::print(stderr, "rubric: {} of {} messages do not come up; --count {} has them all\n",

@@ -1,5 +1,5 @@
 // Parses expressions by precedence, and prints them again.
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <array>
 
@@ -249,15 +249,6 @@ class Parser {
   const Operator* operator_ = nullptr;  // What the token is, if it is one.
 };
 
-std::string joined(const std::vector<std::string>& words, std::string_view separator) {
-  std::string out;
-  for (const std::string& word : words) {
-    if (!out.empty()) out += separator;
-    out += word;
-  }
-  return out;
-}
-
 int level_of(ExprOp op) {
   if (op == ExprOp::kNot) return kNotLevel;
   for (const Operator& candidate : kOperators) {
@@ -269,10 +260,11 @@ int level_of(ExprOp op) {
 std::string text_at(const Expr& expr, int level) {
   std::string out;
   const int own = level_of(expr.op);
+  const char* const to_i = expr.to_i ? ".to_i" : "";
   switch (expr.op) {
     case ExprOp::kInt: return expr.is_bool ? expr.path[0] : std::to_string(expr.value);
-    case ExprOp::kField: return joined(expr.path, ".") + (expr.to_i ? ".to_i" : "");
-    case ExprOp::kEnumValue: return joined(expr.path, "::") + (expr.to_i ? ".to_i" : "");
+    case ExprOp::kField: return fmt::format("{}{}", fmt::join(expr.path, "."), to_i);
+    case ExprOp::kEnumValue: return fmt::format("{}{}", fmt::join(expr.path, "::"), to_i);
     case ExprOp::kNot: out = "not " + text_at(*expr.operands[0], own); break;
     default:
       for (const Operator& candidate : kOperators) {

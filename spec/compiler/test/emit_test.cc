@@ -1,5 +1,4 @@
-// The output of the emitters, and the routes in it.
-
+// The output of the emitters. generate_test follows the routes in it, each to its message.
 #include "spec/compiler/emit/emit.h"
 
 #include <gtest/gtest.h>
@@ -35,42 +34,12 @@ const Spec& spec_named(std::string_view id) {
   throw std::out_of_range("no such spec");
 }
 
-const Route& route_to(const std::vector<Route>& routes, std::string_view carrier,
-                      std::string_view type) {
-  for (const Route& one : routes) {
-    if (one.carrier == carrier && one.type->id == type) return one;
-  }
-  throw std::out_of_range("no such route");
-}
-
 std::string text_of(const std::vector<RouteNumber>& numbers) {
   std::ostringstream out;
   for (const RouteNumber& one : numbers) {
     out << one.offset << ':' << one.width_bytes << '=' << one.value << ' ';
   }
   return out.str();
-}
-
-TEST(Routes, LeadThroughSwitchesAndConditions) {
-  const auto routes = routes_of(spec_named("rubicon"));
-  const Route& join = route_to(routes, "radio_i", "join_request");
-  EXPECT_EQ(join.offset, 11);
-  EXPECT_EQ(text_of(join.choices), "10:1=14 ");
-  EXPECT_EQ(text_of(join.lengths), "");
-  const Route& joined = route_to(routes, "serial", "serial_joined");
-  EXPECT_EQ(joined.offset, 8 + 12 + 2);
-  EXPECT_EQ(joined.room, 100U);
-  EXPECT_EQ(text_of(joined.lengths), "5:1=8 19:1=20 ");
-  EXPECT_NE(text_of(joined.choices).find("7:1=28 "), std::string::npos);
-  EXPECT_NE(text_of(joined.choices).find("20:1=3 21:1=10 22:1=16 "), std::string::npos);
-}
-
-TEST(Routes, DirectionChoosesAmongLearningMessages) {
-  const auto routes = routes_of(spec_named("rubicon"));
-  const auto down = text_of(route_to(routes, "serial", "syn_create_cmd").choices);
-  EXPECT_NE(down.find("14:2=65533 "), std::string::npos) << down;  // src.devid is NULL.
-  const auto up = text_of(route_to(routes, "serial", "learning_output").choices);
-  EXPECT_EQ(up.find("14:2=65533 "), std::string::npos) << up;
 }
 
 TEST(Routes, TwoFieldKeysAreTakenApart) {
@@ -87,17 +56,6 @@ TEST(Routes, TwoFieldKeysAreTakenApart) {
   const auto routes = routes_of(*model.specs.back());
   ASSERT_EQ(routes.size(), 1U);
   EXPECT_EQ(text_of(routes[0].choices), "0:1=18 1:1=3 ");
-}
-
-TEST(Routes, EveryMessageOfTheSwitchesIsReached) {
-  const auto routes = routes_of(spec_named("rubicon"));
-  for (const char* type :
-       {"net_msg", "app_msg", "app_msg_from_pc", "updates", "read_updates", "demo", "demo_data",
-        "learning_notification", "learning_module_down", "learning_output", "rubicon_ack",
-        "rubicon_ack_seq_only", "synaptic_data", "broadcast_cmd", "syn_create_cmd",
-        "learning_module_cmd", "learning_module_float_cmd", "netid_cmd"}) {
-    EXPECT_NO_THROW(route_to(routes, "serial", type)) << type;
-  }
 }
 
 std::vector<GeneratedFile> all_files() {
