@@ -371,14 +371,16 @@ void add_each_options(Command& command, EachOptions& options) {
   command.add_flag("--each", options.each,
                    "Take each FILE as a run of its own, and folders and patterns of such; print a "
                    "line of JSON (rubric.each/1) for each");
-  command.add_option("--jobs", options.jobs, "With --each: so many runs at a time (default: cores)")
+  command
+      .add_option("--jobs", options.jobs,
+                  "With --each, take this many runs at a time (default: cores)")
       .check(at_least_one);
   command
       .add_option("--resume", options.resume,
-                  "With --each: keep results in this file, and do nothing again that is there")
+                  "With --each, keep results in this file, and skip runs whose results are there")
       .check(given);
   command.add_option("--shard", options.shard,
-                     "With --each: take only the Kth of N parts, by the files' names: K/N");
+                     "With --each, take only part K of N, divided by the files' names: K/N");
 }
 
 void check_each(const EachOptions& options) {

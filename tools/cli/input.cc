@@ -463,9 +463,8 @@ void add_capture_options(Command& app, InputOptions& options) {
       .one_of({"auto", "crc", "cc24xx", "none"})
       .show_default();
   app.add_option("--link-type", options.links,
-                 "Read a link type from 147 to 162, to which everybody gives a meaning of their "
-                 "own, as serial, sf, radio, radio-fcs, radio-phy, radio-tap or ethernet: "
-                 "149=radio-fcs")
+                 "Read a user-defined link type, 147 to 162, as serial, sf, radio, radio-fcs, "
+                 "radio-phy, radio-tap or ethernet: 149=radio-fcs")
       .check(check_user_link)
       .repeatable();
 }

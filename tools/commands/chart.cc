@@ -161,7 +161,7 @@ void add_chart(cli::Command& app) {
   auto options = std::make_shared<ChartOptions>();
   cli::Command& sub = app.add_subcommand("chart", "Draw a golden trace as a sequence chart");
   sub.footer(kChartFooter);
-  sub.add_option("case", options->what, "A case's name, FILE.rtr or FILE.rtr:CASE")
+  sub.add_option("CASE", options->what, "A case's name, FILE.rtr or FILE.rtr:CASE")
       .required()
       .check(cli::given);
   sub.add_option("--format", options->format, "Draw as text or svg")

@@ -376,7 +376,7 @@ void add_bounds(cli::Command& sub, ExploreOptions& options) {
   sub.add_option("--memory", options.memory,
                  "Stop, inconclusive, before the process takes more than this (k, M, G)")
       .check(size, "SIZE");
-  sub.add_flag("--exact", n.exact, "Keep apart states that differ in nothing that matters");
+  sub.add_flag("--exact", n.exact, "Do not merge states that differ in nothing that matters");
   n.threads = std::max(1U, std::thread::hardware_concurrency());
   sub.add_option("--threads", n.threads, "Run this many threads").between(1, 64).show_default();
 }

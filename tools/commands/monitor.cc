@@ -304,7 +304,7 @@ void add_monitor(cli::Command& app) {
       .one_of({"paper", "deployed"})
       .show_default();
   sub.add_option("--silent-after", options->silent_after_s,
-                 "Call a node of a line silent of which no message came for so many seconds; 0: "
+                 "Report a node of a line as silent after this many seconds without a message; 0: "
                  "never")
       .between(0, 86'400)
       .show_default();

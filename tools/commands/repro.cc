@@ -124,13 +124,13 @@ void add_repro(cli::Command& app) {
   cli::Command& sub =
       app.add_subcommand("repro", "Write an input of a stateful fuzz target as a trace");
   sub.footer(kReproFooter);
-  sub.add_option("fuzzer", options->fuzzer, "The fuzz target whose input it is")
+  sub.add_option("FUZZER", options->fuzzer, "The fuzz target whose input it is")
       .required()
       .one_of({"machine", "nodes", "network"});
-  sub.add_option("input", options->input, "The input; - is stdin").required().type_name("FILE");
+  sub.add_option("FILE", options->input, "The input; - is stdin").required();
   sub.add_option("--target", options->target, "Run machine, or machine:FLAW").show_default();
   sub.add_flag("--exact", options->exact,
-               "Ask for the machine's own numbers and bytes, not for what the rules ask for");
+               "Expect the machine's own numbers and bytes, not only what the rules ask for");
   sub.add_option("-o,--out", options->out, "Write the trace to this file; - is stdout")
       .show_default();
   sub.callback([options] { run_repro(*options); });

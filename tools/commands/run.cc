@@ -308,41 +308,46 @@ void add_run(cli::Command& app) {
   cli::Command& sub = app.add_subcommand("run", "Run a mote, a sink or a base station on this PC");
   sub.footer(kRunFooter);
   sub.add_option("WHAT", options->role,
-                 "mote, sink or base-station; proxy: a base station that others subscribe at; or "
-                 "FILE.yaml: islands with all that is in them")
+                 "Run a mote, sink or base-station; a proxy, a base station at which programs "
+                 "subscribe; or FILE.yaml, islands with all that is in them")
       .check(is_role, "mote|sink|base-station|proxy|FILE.yaml")
       .required();
-  sub.add_option("--id", options->id, "Id of a mote, from 2 to 65532");
-  sub.add_option("--island", options->island, "Island of a sink or base station").between(0, 65532);
-  sub.add_option("--radio", options->radio, "Virtual air of a mote or sink; port 0 is a free one")
+  sub.add_option("--id", options->id, "Give a mote this id, from 2 to 65532");
+  sub.add_option("--island", options->island, "Give a sink or base station this island")
+      .between(0, 65532);
+  sub.add_option("--radio", options->radio, "Use this virtual air; port 0 is a free one")
       .check(is_radio, "zep:PORT")
       .show_default();
-  sub.add_option("--serial", options->serial,
-                 "A sink's serial line: a serial forwarder at this port of the host, 0 a free one, "
-                 "for one program at a time, or a pseudo-terminal, whose name is said on stderr")
+  sub.add_option(
+         "--serial", options->serial,
+         "Serve a sink's serial line to one program at a time: as a serial forwarder at this "
+         "port of the host, 0 a free one, or as a pseudo-terminal, which stderr names")
       .check(is_serial, "sf-server:PORT|pty");
-  sub.add_option("--sink", options->sink, "A base station's line to its sink")
+  sub.add_option("--sink", options->sink, "Reach a base station's sink by this line")
       .check(is_line)
       .show_default();
-  sub.add_option("--app", options->app,
-                 "-: read calls as JSON lines from stdin, a mote joins by one; demo: a mote sends "
-                 "readings")
+  sub.add_option(
+         "--app", options->app,
+         "Read calls as JSON lines from stdin, with which a mote joins: -; or send a mote's "
+         "readings: demo")
       .one_of({"-", "demo"});
   sub.add_option("--target", options->target,
                  "Run another implementation as the mote, in virtual time turned by the clock: a "
                  "command that speaks rct/1, such as firmware in a simulator, machine or "
                  "machine:FLAW, as for 'rubric test'")
       .check(cli::given);
-  sub.add_option("--type", options->type, "Type of a mote that joins by itself, or its number")
+  sub.add_option("--type", options->type,
+                 "Give a mote that joins by itself this type, by name or number")
       .show_default();
   sub.add_option("--transducers", options->transducers,
-                 "Its transducers, with commas between, or a number of bits")
+                 "Give it these transducers, separated by commas, or the number of their bits")
       .show_default();
-  sub.add_option("--actuators", options->actuators, "Its actuators, the same").show_default();
-  sub.add_option("--loss", options->loss_percent, "Lose so many percent of the frames that come")
+  sub.add_option("--actuators", options->actuators, "Give it these actuators, in the same form")
+      .show_default();
+  sub.add_option("--loss", options->loss_percent, "Lose this many percent of the incoming frames")
       .between(0, 100)
       .show_default();
-  sub.add_option("--seed", options->seed, "Seed of waits, losses and the first number");
+  sub.add_option("--seed", options->seed, "Seed waits, losses and the first number");
   cli::add_write_options(sub, options->write, "Keep all frames in this pcapng file", true);
   const cli::Option with_space =
       sub.add_option(
@@ -359,18 +364,18 @@ void add_run(cli::Command& app) {
       .check(cli::given);
   sub.add_option(
          "--gone-after", options->gone_after_s,
-         "A sink or base station: say mote_left of a mote that was silent for so many seconds; a "
-         "sink then lets it join anew, in the space it is offline; 0: never")
+         "Report mote_left after a mote was silent for this many seconds; a sink then lets it join "
+         "anew, and in the space it is offline; 0: never")
       .between(0, 86'400)
       .show_default();
   sub.add_option(
          "--listen", options->listen,
-         "A proxy's port, at which programs of this host subscribe by JSON lines; 0: a free "
-         "one, which is said on stderr")
+         "Let programs of this host subscribe at this port of a proxy by JSON lines; 0: a free "
+         "one, which stderr names")
       .between(0, 65'535)
       .show_default();
   sub.add_option("--network", options->network,
-                 "A second network behind a proxy, by lines of words at this port, as of KNX")
+                 "Attach a second network to a proxy, such as KNX, by lines of words at this port")
       .check(is_network, "lines:HOST:PORT");
   sub.add_option("--log", options->log, "Write what the nodes were given and did to this .rtr file")
       .check(cli::given);

@@ -57,9 +57,9 @@ constexpr const char* kSendFooter =
     "    rubric send --as config --to serial@/dev/ttyUSB0:telosb\n"
     "  rubric send commands.jsonl --to sf@localhost:9002 --listen 2   # and what is answered\n"
     "  rubric decode run.pcapng --filter 'direction==inbound' --format jsonl | rubric send\n"
-    "Exit codes: 0 all packets confirmed (or given to the forwarder), 64 usage, 66 some line or\n"
-    "file could not be read or encoded, and was not sent, 3 a packet was not confirmed, or the\n"
-    "line cannot be had or is gone.";
+    "Exit codes: 0 all packets confirmed (or given to the forwarder), 3 a packet was not\n"
+    "confirmed, or the line cannot be had or is gone, 64 usage, 66 some line or file could not be\n"
+    "read or encoded, and was not sent.";
 
 lines::Address address_of(const SendOptions& options) {
   const std::string text = options.to.empty() ? lines::default_address() : options.to;

@@ -15,7 +15,7 @@ inline void add_state_option(cli::Command& command, std::vector<std::string>& st
   command
       .add_option("--state", stated,
                   "State a parameter of the implementation, NAME=VALUE as in ack_timeout=2000; "
-                  "again for another; names: " +
+                  "repeat for others; names: " +
                       trace::parameter_names())
       .one_at_a_time();
 }

@@ -358,11 +358,11 @@ void add_selection(cli::Command& command, TestOptions& options) {
 void add_options(cli::Command& command, TestOptions& options) {
   command
       .add_option("--target", options.targets,
-                  "Test this implementation: a command, or machine; again for another one")
+                  "Test this implementation: a command, or machine; repeat for others")
       .check(cli::given);
   command
       .add_option("--app", options.app,
-                  "Show the application of a node at its line by this command, and perhaps PEIS")
+                  "Run this command as the application, and perhaps PEIS, of a node at its line")
       .check(cli::given);
   add_selection(command, options);
   command
@@ -393,11 +393,11 @@ void add_options(cli::Command& command, TestOptions& options) {
       .check(cli::given);
   command
       .add_option("--write-expect", options.write_expect,
-                  "Write such a file: what failed or was not decided, with reasons to fill in")
+                  "Write what failed or was not decided as such a file, with reasons to fill in")
       .check(cli::given);
   command
       .add_option("--require-rules", options.rules_required,
-                  "Require that so many rules are decided, else the run is incomplete")
+                  "Require this many rules to be decided, else the run is incomplete")
       .check(cli::whole_number);
   command.add_option("--format", options.format, "Print text, json (rubric.test/1), junit or tap")
       .one_of({"text", "json", "junit", "tap"})
