@@ -36,7 +36,7 @@ bool CaptureFile::open() {
   while (!file_ && error_ == 0) {
     path_ = numbered(first_path_, number_);
     try {
-      file_ = std::make_unique<report::OutFile>(path_, mode_);
+      file_ = std::make_unique<text::OutFile>(path_, mode_);
     } catch (const std::system_error& error) {
       // A long run goes on after the files of an earlier one.
       if (number_ > 1 && error.code() == std::errc::file_exists) {
@@ -75,7 +75,7 @@ void CaptureFile::write(const Packet& packet, std::string_view interface_name) {
 
 void CaptureFile::flush() {
   if (error_ == 0) {
-    error_ = report::write_all(file_->fd(), waiting_);
+    error_ = text::write_all(file_->fd(), waiting_);
     if (error_ != 0 && error_ != EPIPE) complain();
   }
   size_ += waiting_.size();
@@ -105,7 +105,7 @@ bool CaptureFile::finish() {
 }
 
 void CaptureFile::complain() const {
-  report::print(stderr, "rubric: {}: {}\n", path_, std::strerror(error_));
+  text::print(stderr, "rubric: {}: {}\n", path_, std::strerror(error_));
 }
 
 }  // namespace rubric::lines

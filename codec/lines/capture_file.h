@@ -24,7 +24,7 @@ struct Rotation {
 /// is reported by finish().
 class CaptureFile {
  public:
-  using Mode = report::OutFile::Mode;
+  using Mode = text::OutFile::Mode;
 
   /// Opens nothing yet: that is left to the first packet or to open(), so that a source that
   /// cannot be had costs no file. A rotated `run.pcapng` goes on in `run.2.pcapng`.
@@ -52,7 +52,7 @@ class CaptureFile {
   const std::string first_path_;
   const Mode mode_;
   const Rotation rotation_;
-  std::unique_ptr<report::OutFile> file_;
+  std::unique_ptr<text::OutFile> file_;
   int number_ = 1;
   std::uint64_t size_ = 0;  // Of the present file.
   std::chrono::steady_clock::time_point opened_at_{};

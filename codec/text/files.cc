@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <system_error>
 
-namespace rubric::report {
+namespace rubric::text {
 
 int write_all(int fd, std::string_view rest) {
   while (!rest.empty()) {
@@ -91,4 +91,4 @@ int write_file(const std::string& path, std::string_view text) {
   }
 }
 
-}  // namespace rubric::report
+}  // namespace rubric::text

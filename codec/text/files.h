@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace rubric::report {
+namespace rubric::text {
 
 /// Writes all of `text` to the file descriptor, waiting if needed. Returns 0, or the error as in
 /// errno.
@@ -43,4 +43,4 @@ class OutFile {
 /// error as in errno; then an old file is as it was.
 int write_file(const std::string& path, std::string_view text);
 
-}  // namespace rubric::report
+}  // namespace rubric::text

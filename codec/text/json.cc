@@ -1,6 +1,6 @@
 #include "codec/text/json.h"
 
-namespace rubric::report {
+namespace rubric::text {
 
 Json Json::raw(std::string text) {
   Json out(0);
@@ -17,4 +17,4 @@ Json Json::object(const Members& members, std::string_view between) {
   return raw(out + "}");
 }
 
-}  // namespace rubric::report
+}  // namespace rubric::text

@@ -10,7 +10,7 @@
 
 #include "codec/text/text.h"
 
-namespace rubric::report {
+namespace rubric::text {
 
 /// One JSON value. Texts become strings in UTF-8, integers numbers.
 class Json {
@@ -53,4 +53,4 @@ class Json {
   std::string text_;
 };
 
-}  // namespace rubric::report
+}  // namespace rubric::text

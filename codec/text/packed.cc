@@ -7,7 +7,7 @@
 #include <array>
 #include <new>
 
-namespace rubric::report {
+namespace rubric::text {
 namespace {
 
 constexpr std::size_t kPieceBytes = 64 * 1024;
@@ -196,4 +196,4 @@ std::string unpacked(Packing packing, std::string_view packed) {
   return out;
 }
 
-}  // namespace rubric::report
+}  // namespace rubric::text

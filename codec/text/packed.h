@@ -9,7 +9,7 @@
 
 #include "codec/runtime/bytes.h"
 
-namespace rubric::report {
+namespace rubric::text {
 
 enum class Packing : std::uint8_t { kNone, kGzip, kZstd };
 
@@ -52,4 +52,4 @@ std::unique_ptr<Packer> make_packer(Packing packing);
 /// Unpacks the whole of a file. Throws PackedDamage.
 std::string unpacked(Packing packing, std::string_view packed);
 
-}  // namespace rubric::report
+}  // namespace rubric::text

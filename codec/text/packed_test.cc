@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace rubric::report {
+namespace rubric::text {
 namespace {
 
 Bytes view(const std::string& text) {
@@ -83,4 +83,4 @@ TEST(Packed, Names) {
 }
 
 }  // namespace
-}  // namespace rubric::report
+}  // namespace rubric::text

@@ -4,7 +4,7 @@
 
 #include "codec/text/text.h"
 
-namespace rubric::report {
+namespace rubric::text {
 
 std::string shell_word(std::string_view text) {
   const bool plain = !text.empty() && text.find_first_not_of(
@@ -31,4 +31,4 @@ std::string shell_word(std::string_view text) {
   return out + "'";
 }
 
-}  // namespace rubric::report
+}  // namespace rubric::text

@@ -4,10 +4,10 @@
 #include <string>
 #include <string_view>
 
-namespace rubric::report {
+namespace rubric::text {
 
 /// Returns the text as one word of a POSIX shell: unchanged if nothing in it is special, else in
 /// quotes.
 std::string shell_word(std::string_view text);
 
-}  // namespace rubric::report
+}  // namespace rubric::text

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstring>
 
-namespace rubric::report {
+namespace rubric::text {
 namespace {
 
 constexpr std::string_view kReplacement = "\xEF\xBF\xBD";  // U+FFFD.
@@ -197,4 +197,4 @@ void print_harmless(std::FILE* file, std::string_view text) {
   fmt::print(file, "{}", harmless(text, Keep::kLines));
 }
 
-}  // namespace rubric::report
+}  // namespace rubric::text

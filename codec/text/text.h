@@ -9,7 +9,7 @@
 #include <string_view>
 #include <utility>
 
-namespace rubric::report {
+namespace rubric::text {
 
 /// Returns "3.842100"; empty without a time, which is a negative one.
 std::string seconds_text(std::int64_t time_us);
@@ -73,4 +73,4 @@ void print(std::FILE* file, fmt::format_string<Args...> format, Args&&... args) 
   print_harmless(file, fmt::format(format, std::forward<Args>(args)...));
 }
 
-}  // namespace rubric::report
+}  // namespace rubric::text

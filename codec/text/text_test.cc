@@ -4,7 +4,7 @@
 
 #include "codec/text/json.h"
 
-namespace rubric::report {
+namespace rubric::text {
 namespace {
 
 TEST(Text, WrapAtBlanks) {
@@ -78,4 +78,4 @@ TEST(Text, Counts) {
 }
 
 }  // namespace
-}  // namespace rubric::report
+}  // namespace rubric::text

@@ -28,7 +28,7 @@ constexpr std::size_t kDescribedMax = 60;
 double length_of(std::string_view text, double character) {
   std::size_t letters = 0;
   for (std::size_t i = 0; i < text.size(); ++letters) {
-    i += std::max<std::size_t>(utf8_length(text.substr(i)), 1);
+    i += std::max<std::size_t>(text::utf8_length(text.substr(i)), 1);
   }
   return static_cast<double>(letters) * character;
 }
@@ -185,7 +185,8 @@ class Picture {
         "aria-labelledby=\"{0}-title {0}-desc\" viewBox=\"0 0 {1:.0f} {2:.0f}\" width=\"{1:.0f}\" "
         "height=\"{2:.0f}\">\n<title id=\"{0}-title\">{3}</title>\n<desc id=\"{0}-desc\">{4}"
         "</desc>\n",
-        xml_text(words_.id), width_, height, xml_text(words_.title), xml_text(description()));
+        text::xml_text(words_.id), width_, height, text::xml_text(words_.title),
+        text::xml_text(description()));
     return words_.in_page ? out : fmt::format("{}<style>{}</style>\n", out, kSequenceStyle);
   }
 
@@ -193,7 +194,7 @@ class Picture {
 
   // Returns the text for readers who do not see the picture.
   std::string description() const {
-    std::string out = fmt::format("{} between {}.", counted(sequence_.rows.size(), "event"),
+    std::string out = fmt::format("{} between {}.", text::counted(sequence_.rows.size(), "event"),
                                   fmt::join(sequence_.columns, ", "));
     if (words_.in_page || sequence_.rows.size() > kDescribedMax) return out;
     for (const SequenceRow& row : sequence_.rows) {
@@ -221,10 +222,10 @@ class Picture {
           "rx=\"5\"/>"
           "<text class=\"rc-name\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>",
           x_[c] - wide / 2, y, wide, kHeadHeight, x_[c], y + (about.empty() ? 23 : 16),
-          xml_text(name_of(c)));
+          text::xml_text(name_of(c)));
       if (!about.empty()) {
         out += fmt::format("<text class=\"rc-about\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>", x_[c],
-                           y + 30, xml_text(about));
+                           y + 30, text::xml_text(about));
       }
       out += '\n';
     }
@@ -248,7 +249,7 @@ class Picture {
       out += fmt::format("<rect class=\"rc-band\" y=\"{:.1f}\" width=\"100%\" height=\"{}\"/>",
                          y + 8 - height, height);
     } else {
-      out += "<title>" + xml_text(row.full) + "</title>";
+      out += "<title>" + text::xml_text(row.full) + "</title>";
     }
     if (tells_time) {
       out += fmt::format("<text class=\"rc-time\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>", time_,
@@ -279,7 +280,8 @@ class Picture {
       if (comma) word.pop_back();
       const bool rule = word.size() > 2 && word.find('-') != word.npos && word[0] >= 'A' &&
                         word[0] <= 'Z' && word[1] >= '0' && word[1] <= '9';
-      out += rule ? "<tspan class=\"rc-rule\">" + xml_text(word) + "</tspan>" : xml_text(word);
+      out += rule ? "<tspan class=\"rc-rule\">" + text::xml_text(word) + "</tspan>"
+                  : text::xml_text(word);
       if (comma) out += ',';
       if (end < note.size()) out += ' ';
       i = end + 1;
@@ -289,7 +291,7 @@ class Picture {
 
   static std::string label(double x, double y, const std::string& text, const char* more) {
     return fmt::format("<text class=\"rc-label{}\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>", more, x, y,
-                       xml_text(text));
+                       text::xml_text(text));
   }
 
   static std::string line(double x1, double x2, double y, const std::string& kind) {

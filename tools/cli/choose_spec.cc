@@ -38,7 +38,7 @@ struct Fit {
 Bytes view(const std::vector<std::uint8_t>& bytes) { return {bytes.data(), bytes.size()}; }
 
 std::vector<std::uint8_t> plain_beginning(const std::vector<std::uint8_t>& bytes) {
-  const auto unpacker = report::make_unpacker(report::packing_of(view(bytes)));
+  const auto unpacker = text::make_unpacker(text::packing_of(view(bytes)));
   if (!unpacker) return bytes;
   std::vector<std::uint8_t> out(kBeginningMost);
   Bytes rest = view(bytes);
@@ -49,7 +49,7 @@ std::vector<std::uint8_t> plain_beginning(const std::vector<std::uint8_t>& bytes
       if (got == 0) break;
       size += got;
     }
-  } catch (const report::PackedDamage&) {
+  } catch (const text::PackedDamage&) {
     // Who reads the file says so.
   }
   out.resize(size);
@@ -120,7 +120,7 @@ const reflect::Protocol& choose_spec(const InputOptions& options) {
     best_fit = fit;
   }
   if (best != &usual) {
-    report::print(
+    text::print(
         stderr,
         "rubric: {}: read by the spec {}, which fits {} of its first {} messages wholly, {} "
         "{} (--spec decides)\n",

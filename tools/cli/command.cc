@@ -234,7 +234,7 @@ const Command& Command::innermost() const {
 
 int Command::complain(const std::string& what) const {
   const std::string full = parent_ ? parent_->name() + " " + name() : name();
-  report::print(stderr, "{}: {}\nTry '{} --help'.\n", full, what, full);
+  text::print(stderr, "{}: {}\nTry '{} --help'.\n", full, what, full);
   return kExitUsage;
 }
 
@@ -269,10 +269,10 @@ int Command::parse_and_run(int argc, char** argv) {
     return innermost().complain(error.what());
   } catch (const std::system_error& error) {  // By fmt::print(), if it is a closed pipe.
     if (error.code() == std::errc::broken_pipe) return kExitOutput;
-    report::print(stderr, "{}: {}\n", name(), error.what());
+    text::print(stderr, "{}: {}\n", name(), error.what());
     return kExitInput;
   } catch (const std::exception& error) {
-    report::print(stderr, "{}: {}\n", name(), error.what());
+    text::print(stderr, "{}: {}\n", name(), error.what());
     return kExitBroken;
   }
   return kExitClean;

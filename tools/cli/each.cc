@@ -158,7 +158,7 @@ class State {
   // Returns whether the line is on its way to the disk.
   bool add(const std::string& key, const std::string& line) {
     if (fd_ < 0 || key.empty()) return true;
-    return report::write_all(fd_, kBefore + key + kBetween + line + "}\n") == 0;
+    return text::write_all(fd_, kBefore + key + kBetween + line + "}\n") == 0;
   }
 
  private:
@@ -191,7 +191,7 @@ class State {
     if (at == 0 && !text.empty() && !text.starts_with(kBefore.substr(0, text.size()))) {
       throw UsageError("--resume", path + " holds something else");
     }
-    if (at < text.size()) report::write_all(fd_, "\n");  // After a line that was cut short.
+    if (at < text.size()) text::write_all(fd_, "\n");  // After a line that was cut short.
   }
 
   int fd_ = -1;
@@ -277,11 +277,11 @@ class Runs {
       code = run(runs_[i].file, members);
     } catch (const Ending& ending) {
       if (code_of(ending) >= 0) code = code_of(ending);
-      if (code_of(ending) < 0) report::print(stderr, "{}\n", ending.what());
+      if (code_of(ending) < 0) text::print(stderr, "{}\n", ending.what());
     } catch (const std::exception& error) {
-      report::print(stderr, "{}\n", error.what());
+      text::print(stderr, "{}\n", error.what());
     }
-    if (report::write_all(child.members_fd, members) != 0) code = kExitOutput;
+    if (text::write_all(child.members_fd, members) != 0) code = kExitOutput;
     std::fflush(nullptr);
     ::_exit(code);
   }
@@ -302,15 +302,15 @@ class Runs {
     }
     while (error.ends_with('\n')) error.pop_back();
     std::string line = fmt::format(R"({{"schema":"rubric.each/1","file":{},"exit_code":{})",
-                                   report::json_string(runs_[child.run].file),
+                                   text::json_string(runs_[child.run].file),
                                    killed ? kExitBroken : WEXITSTATUS(status));
     if (!members.empty()) line += "," + members;
-    if (!error.empty()) line += R"(,"error":)" + report::json_string(error);
+    if (!error.empty()) line += R"(,"error":)" + text::json_string(error);
     line += '}';
     // What broke may go well the next time.
     const bool lasts = !killed && (WEXITSTATUS(status) == 0 || !members.empty());
     if (lasts && good_ && !state_.add(child.key, line)) {
-      report::print(stderr, "rubric {}: cannot write the file of --resume\n", job_.command);
+      text::print(stderr, "rubric {}: cannot write the file of --resume\n", job_.command);
       state_failed_ = true;
     }
     finish(child.run, line);
@@ -346,8 +346,8 @@ class Runs {
       ends += fmt::format("{} {} with {}", ends.empty() ? ":" : ",", count, code);
       if (rank(code) > rank(gravest)) gravest = code;
     }
-    report::print(stderr, "rubric {}: {}{}{}\n", job_.command, report::counted(next_line_, "run"),
-                  known_ == 0 ? "" : fmt::format(" ({} known by --resume)", known_), ends);
+    text::print(stderr, "rubric {}: {}{}{}\n", job_.command, text::counted(next_line_, "run"),
+                known_ == 0 ? "" : fmt::format(" ({} known by --resume)", known_), ends);
     return !output_.finish() || state_failed_ ? kExitOutput : gravest;
   }
 

@@ -169,7 +169,7 @@ class Run {
         complain(std::strerror(error.code().value()));
       } catch (const FileChanged& changed) {
         complain(changed.what());
-      } catch (const report::PackedDamage& damage) {
+      } catch (const text::PackedDamage& damage) {
         complain(damage.what());
       } catch (const std::invalid_argument& error) {
         complain(error.what());
@@ -182,7 +182,7 @@ class Run {
   void remark(std::string_view what) {
     progress_.clear();
     const std::string_view name = source_.file == "-" ? "stdin" : source_.file;
-    report::print(stderr, "rubric: {}: {}\n", name, what);
+    text::print(stderr, "rubric: {}: {}\n", name, what);
   }
 
   void complain(std::string_view what) {
@@ -205,7 +205,7 @@ class Run {
       const std::unique_ptr<Reader> reader = make_reader(line.format(), reader_options);
       try {
         line.open(std::chrono::steady_clock::now() + kReconnectEvery);
-        if (std::exchange(lost_, false)) report::print(stderr, "rubric: {}: again\n", address.name);
+        if (std::exchange(lost_, false)) text::print(stderr, "rubric: {}: again\n", address.name);
         pump_line(line, *reader);
       } catch (const lines::Broken& broken) {
         if (!lost_) complain(broken.what());
@@ -227,7 +227,7 @@ class Run {
     lines::Air air(address.at);
     try {
       air.open();
-      if (address.at.port == 0) report::print(stderr, "rubric: zep:{}\n", air.port());
+      if (address.at.port == 0) text::print(stderr, "rubric: zep:{}\n", air.port());
       while (!lines::stop_requested() && !result_.stopped) {
         const Bytes datagram = air.receive(std::chrono::steady_clock::now() + kAirPatience);
         Packet packet;

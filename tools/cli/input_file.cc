@@ -58,8 +58,7 @@ InputFile::InputFile(const std::string& name, bool follow, const std::function<v
       on_idle_(on_idle) {
   static bool said = false;
   if (is_stdin_ && ::isatty(fd_) != 0 && !std::exchange(said, true)) {
-    report::print(stderr,
-                  "rubric: reads what is typed here; Ctrl-D on a line of its own ends it\n");
+    text::print(stderr, "rubric: reads what is typed here; Ctrl-D on a line of its own ends it\n");
   }
   if (fd_ < 0) throw std::system_error(errno, std::generic_category());
   struct stat status {};
@@ -74,7 +73,7 @@ std::size_t InputFile::read(std::uint8_t* to, std::size_t size) {
   if (unpacker_) return read_packed(to, size);
   const std::size_t got = read_plain(to, size);
   if (std::exchange(begun_, true)) return got;
-  unpacker_ = report::make_unpacker(report::packing_of(Bytes(to, got)));
+  unpacker_ = text::make_unpacker(text::packing_of(Bytes(to, got)));
   if (!unpacker_) return got;
   if (follow_) throw FileChanged("it is compressed, so that nothing can follow");
   packed_.assign(to, to + got);
@@ -92,7 +91,7 @@ std::size_t InputFile::read_packed(std::uint8_t* to, std::size_t size) {
     packed_.resize(read_plain(packed_.data(), packed_.size()));
     packed_at_ = 0;
     if (!packed_.empty()) continue;
-    if (!unpacker_->may_end()) throw report::PackedDamage("its compressed data end too soon");
+    if (!unpacker_->may_end()) throw text::PackedDamage("its compressed data end too soon");
     return 0;
   }
 }

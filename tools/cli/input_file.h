@@ -41,7 +41,7 @@ class InputFile {
 
   /// Reads up to `size` bytes and returns their number, 0 at the end, which a followed file has
   /// only when the user asks to stop. Unpacks what begins as gzip or zstd data. Throws
-  /// std::system_error, report::PackedDamage, and, once all was read, FileChanged if the file
+  /// std::system_error, text::PackedDamage, and, once all was read, FileChanged if the file
   /// became shorter, was overwritten, or its name belongs to another file or none.
   std::size_t read(std::uint8_t* to, std::size_t size);
 
@@ -64,8 +64,8 @@ class InputFile {
   bool is_regular_ = false;
   bool follow_;
   bool begun_ = false;
-  std::unique_ptr<report::Unpacker> unpacker_;  // Null: the bytes are as they are.
-  std::vector<std::uint8_t> packed_;            // Read, and from packed_at_ on not unpacked.
+  std::unique_ptr<text::Unpacker> unpacker_;  // Null: the bytes are as they are.
+  std::vector<std::uint8_t> packed_;          // Read, and from packed_at_ on not unpacked.
   std::size_t packed_at_ = 0;
   std::vector<std::uint8_t> tail_;  // Of a followed file: the last bytes that were read.
   const std::function<void()>& on_idle_;

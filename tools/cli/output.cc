@@ -16,8 +16,8 @@ namespace {
 
 bool is_written(const std::string& name, int error) {
   if (error != 0 && error != EPIPE) {
-    report::print(stderr, "rubric: cannot write {}: {}\n", name == "-" ? "stdout" : name,
-                  std::strerror(error));
+    text::print(stderr, "rubric: cannot write {}: {}\n", name == "-" ? "stdout" : name,
+                std::strerror(error));
   }
   return error == 0;
 }
@@ -25,18 +25,18 @@ bool is_written(const std::string& name, int error) {
 }  // namespace
 
 Output::Output(const std::string& path, Mode mode)
-    : file_(std::make_unique<report::OutFile>(path, mode)),
+    : file_(std::make_unique<text::OutFile>(path, mode)),
       name_(path),
       fd_(file_->fd()),
-      packer_(report::make_packer(report::packing_of_name(path))) {}
+      packer_(text::make_packer(text::packing_of_name(path))) {}
 
 bool Output::flush() {
   if (packer_) {
     packer_->pack(buffer_.view(), packed_);
-    if (open()) error_ = report::write_all(fd_, packed_);
+    if (open()) error_ = text::write_all(fd_, packed_);
     packed_.clear();
   } else if (open()) {
-    error_ = report::write_all(fd_, buffer_.view());
+    error_ = text::write_all(fd_, buffer_.view());
   }
   buffer_.clear();
   return open();
@@ -45,7 +45,7 @@ bool Output::flush() {
 bool Output::finish() {
   if (flush() && packer_) {
     packer_->finish(packed_);
-    error_ = report::write_all(fd_, packed_);
+    error_ = text::write_all(fd_, packed_);
     packed_.clear();
   }
   if (open() && file_) error_ = file_->finish();
@@ -54,11 +54,11 @@ bool Output::finish() {
 
 bool write_file(const std::string& path, std::string_view text) {
   if (path == "-") std::fflush(stdout);  // Keeps the order with earlier output.
-  return is_written(path, report::write_file(path, text));
+  return is_written(path, text::write_file(path, text));
 }
 
 int cannot_write(const std::system_error& error) {
-  report::print(stderr, "rubric: cannot write {}\n", error.what());
+  text::print(stderr, "rubric: cannot write {}\n", error.what());
   return kExitOutput;
 }
 

@@ -17,7 +17,7 @@ namespace rubric::cli {
 /// Collects in buffer() and writes in large pieces.
 class Output {
  public:
-  using Mode = report::OutFile::Mode;
+  using Mode = text::OutFile::Mode;
 
   explicit Output(int fd = 1) : fd_(fd) {}
   /// Writes to a file, packed if its name ends in .gz or .zst; "-" is stdout. Throws
@@ -43,11 +43,11 @@ class Output {
  private:
   static constexpr std::size_t kEnough = 192 * 1024;
 
-  std::unique_ptr<report::OutFile> file_;  // Null: a descriptor of somebody else.
+  std::unique_ptr<text::OutFile> file_;  // Null: a descriptor of somebody else.
   std::string name_ = "-";
   int fd_;
   int error_ = 0;
-  std::unique_ptr<report::Packer> packer_;
+  std::unique_ptr<text::Packer> packer_;
   std::string packed_;
   format::Buffer buffer_;
 };

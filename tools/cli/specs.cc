@@ -51,7 +51,7 @@ void add_requirements(rubricc::Model& model) {
 void require_sound(rubricc::Model& model, rubricc::Diagnostics& diagnostics,
                    rubricc::CheckFor what) {
   rubricc::check_model(model, diagnostics, what);
-  report::print(stderr, "{}{}", diagnostics.print_notes(), diagnostics.print());
+  text::print(stderr, "{}{}", diagnostics.print_notes(), diagnostics.print());
   if (!diagnostics.empty()) exit_with(kExitInput);
 }
 
@@ -78,7 +78,7 @@ const reflect::Protocol& read_spec(const std::string& spec) {
 /// Prints the id and the title of each protocol.
 [[noreturn]] void list_specs() {
   for (const std::string& name : protocol_names()) {
-    report::print(stdout, "{:<16}{}\n", name, protocol_of(name).title);
+    text::print(stdout, "{:<16}{}\n", name, protocol_of(name).title);
   }
   exit_with(kExitClean);
 }
@@ -161,7 +161,7 @@ OtherSpecs::OtherSpecs(const reflect::Protocol& chosen) : chosen_(chosen) {
 void OtherSpecs::look_closer(const reflect::Frame& frame) {
   std::vector<Hint> hints;
   look_closer(frame, hints);
-  for (const Hint& hint : hints) report::print(stderr, "{}", hint.text);
+  for (const Hint& hint : hints) text::print(stderr, "{}", hint.text);
 }
 
 void OtherSpecs::look_closer(const reflect::Frame& frame, std::vector<Hint>& hints) {

@@ -24,11 +24,11 @@ bool read_file(const std::string& path, std::string& text, std::string& error) {
   if (file != stdin) std::fclose(file);
   if (broken) return false;
   const Bytes all(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
-  const report::Packing packing = report::packing_of(all);
-  if (packing == report::Packing::kNone) return true;
+  const text::Packing packing = text::packing_of(all);
+  if (packing == text::Packing::kNone) return true;
   try {
-    text = report::unpacked(packing, text);
-  } catch (const report::PackedDamage& damage) {
+    text = text::unpacked(packing, text);
+  } catch (const text::PackedDamage& damage) {
     error = path + ": " + damage.what();
     return false;
   }
@@ -41,7 +41,7 @@ bool is_packed(const std::string& path) {
   if (!file) return false;
   const std::size_t size = std::fread(first, 1, sizeof first, file);
   std::fclose(file);
-  return report::packing_of(Bytes(first, size)) != report::Packing::kNone;
+  return text::packing_of(Bytes(first, size)) != text::Packing::kNone;
 }
 
 }  // namespace rubric::cli

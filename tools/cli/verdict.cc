@@ -18,7 +18,7 @@ void set_verdict(Command& command, std::function<int()> run) {
     } catch (const Ending&) {
       throw;
     } catch (const std::exception& error) {
-      report::print(stderr, "rubric {}: {}\n", name, error.what());
+      text::print(stderr, "rubric {}: {}\n", name, error.what());
       return int{kExitBroken};
     }
   });
@@ -26,7 +26,7 @@ void set_verdict(Command& command, std::function<int()> run) {
 
 void unreadable(const char* command, std::string what) {
   while (what.ends_with('\n')) what.pop_back();
-  report::print(stderr, "rubric {}: {}\n", command, what);
+  text::print(stderr, "rubric {}: {}\n", command, what);
   exit_with(kExitInput);
 }
 

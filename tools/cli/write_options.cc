@@ -37,7 +37,7 @@ lines::Rotation rotation_of(const WriteOptions& options) {
 void check_write(const WriteOptions& options, const std::vector<std::string>& inputs, bool grows) {
   if (options.path.empty()) return;
   keep_apart("--write", options.path, inputs);
-  if (report::packing_of_name(options.path) != report::Packing::kNone) {
+  if (text::packing_of_name(options.path) != text::Packing::kNone) {
     throw UsageError("--write", options.path +
                                     ": captures that grow are not compressed; 'rubric "
                                     "convert' does it afterwards");
@@ -49,7 +49,7 @@ void check_write(const WriteOptions& options, const std::vector<std::string>& in
   }
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
   if (!std::filesystem::exists(path, none) && ::access(folder.c_str(), W_OK | X_OK) != 0) {
-    report::print(stderr, "rubric: cannot write {}: {}\n", options.path, std::strerror(errno));
+    text::print(stderr, "rubric: cannot write {}: {}\n", options.path, std::strerror(errno));
     exit_with(kExitOutput);
   }
 }

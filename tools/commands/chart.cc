@@ -47,7 +47,7 @@ struct ChartOptions {
 };
 
 [[noreturn]] void input_error(const std::string& what) {
-  report::print(stderr, "{}\n", what);
+  text::print(stderr, "{}\n", what);
   cli::exit_with(cli::kExitInput);
 }
 
@@ -102,21 +102,21 @@ int judged(const suite::CaseRun& run) {
     case CaseVerdict::kWeak: return cli::kExitClean;
     case CaseVerdict::kFail:
       for (const runner::Failure& failure : run.result.failures) {
-        report::print(stderr, "{}:{}: not kept at tick {}: {}\n", run.file, failure.place.line,
-                      failure.time, failure.text);
+        text::print(stderr, "{}:{}: not kept at tick {}: {}\n", run.file, failure.place.line,
+                    failure.time, failure.text);
       }
       return cli::kExitFindings;
     case CaseVerdict::kInconclusive:
     case CaseVerdict::kError:
     case CaseVerdict::kSkip: break;
   }
-  report::print(stderr, "{}: {}\n", run.name, run.result.reason);
+  text::print(stderr, "{}: {}\n", run.name, run.result.reason);
   return run.result.verdict == CaseVerdict::kError ? cli::kExitBroken : cli::kExitClean;
 }
 
 std::string text_of(const suite::MachineRun& one, std::size_t width) {
   const report::Sequence sequence = suite::chart(one.run, one.heeds);
-  std::string out = report::wrapped(one.run.name + ": ", one.run.comment, width, 2) + "\n";
+  std::string out = text::wrapped(one.run.name + ": ", one.run.comment, width, 2) + "\n";
   if (sequence.rows.empty()) return out + "Nothing was given, and nothing came.\n";
   return out + report::sequence_text(sequence, 2, width);
 }

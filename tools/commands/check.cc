@@ -99,7 +99,7 @@ int check_files(const CheckOptions& options) {
 
 // Returns what a line of --each says of a run.
 std::string line_members(const report::Story& story) {
-  using report::Json;
+  using text::Json;
   std::map<std::string, std::uint64_t> failures;
   for (std::size_t i = 0; i < story.report.findings.size(); ++i) {
     const check::Finding& finding = story.report.findings[i];
@@ -112,8 +112,8 @@ std::string line_members(const report::Story& story) {
   };
   const Json whole = Json::object({{"verdict", report::verdict_name(story.outcome.verdict)},
                                    {"frames", story.report.frames},
-                                   {"begin", Json::raw(report::seconds_text(story.run.begin_us))},
-                                   {"seconds", Json::raw(report::seconds_text(story.run.end_us))},
+                                   {"begin", Json::raw(text::seconds_text(story.run.begin_us))},
+                                   {"seconds", Json::raw(text::seconds_text(story.run.end_us))},
                                    {"failures", Json::array(failures, failure)}});
   return whole.text().substr(1, whole.text().size() - 2);
 }

@@ -148,7 +148,7 @@ class Session {
     } else if (refused_us_ == 0) {
       refused_us_ = now_us();
     } else if (!refused_told_ && now_us() - refused_us_ > kRefusedUs) {
-      report::print(stderr, "rubric check: {}\n", refused_);
+      text::print(stderr, "rubric check: {}\n", refused_);
       refused_told_ = true;
     }
     for (const check::Change& change : watch_.update(follow_.report(), now_us())) {

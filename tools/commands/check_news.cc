@@ -22,7 +22,7 @@ namespace rubric::tools {
 namespace {
 
 using check::Change;
-using report::Json;
+using text::Json;
 
 // "at" is when it was said, in seconds since 1970; null of a run that is over.
 std::string event(std::string_view name, bool live, const Json::Members& more) {
@@ -80,7 +80,7 @@ std::string report_text(const CheckOptions& options, const report::Story& story,
     text.command = command_of(options);
     text.judge = check::judge;
   }
-  for (const std::string& file : files) text.files += " " + report::shell_word(file);
+  for (const std::string& file : files) text.files += " " + text::shell_word(file);
   return report::text_report(story, text);
 }
 
@@ -117,7 +117,7 @@ cli::Output& CheckNews::output() {
 
 void CheckNews::begin() const {
   if (::isatty(STDERR_FILENO) == 0) return;
-  report::print(stderr, "rubric check: findings as they come; Ctrl-C ends with the report\n");
+  text::print(stderr, "rubric check: findings as they come; Ctrl-C ends with the report\n");
 }
 
 void CheckNews::tell(const check::Run& run, const check::Options& judged, const Change& change,

@@ -180,7 +180,7 @@ bool is_log(const std::string& name) {
 std::string command_of(const CheckOptions& options) {
   std::string out = "rubric check";
   const auto add = [&](const char* name, const std::string& value) {
-    out += fmt::format(" {} {}", name, report::shell_word(value));
+    out += fmt::format(" {} {}", name, text::shell_word(value));
   };
   if (options.profile != "paper") add("--profile", options.profile);
   for (const std::string& node : options.nodes) add("--node", node);

@@ -40,7 +40,7 @@ constexpr Suffix kSuffixes[] = {
 };
 
 std::string container_of(std::string_view file) {
-  file = report::name_unpacked(file);
+  file = text::name_unpacked(file);
   for (const Suffix& known : kSuffixes) {
     if (file.ends_with(known.suffix)) return known.container;
   }
@@ -77,12 +77,12 @@ void count_details(const Packet& packet, std::string_view interface_name,
 
 void report(const Losses& losses, const std::string& container) {
   for (const auto& [why, count] : losses.refused) {
-    report::print(stderr, "rubric: left out {} of {} packets: {}\n", count, losses.packets, why);
+    text::print(stderr, "rubric: left out {} of {} packets: {}\n", count, losses.packets, why);
   }
   const auto lost = [&](std::uint64_t count, const char* what) {
     if (count == 0) return;
-    report::print(stderr, "rubric: {} holds no {}: {} of {} packets lost theirs\n", container, what,
-                  count, losses.written);
+    text::print(stderr, "rubric: {} holds no {}: {} of {} packets lost theirs\n", container, what,
+                count, losses.written);
   };
   lost(losses.times, "times");
   lost(losses.directions, "directions");
@@ -91,15 +91,15 @@ void report(const Losses& losses, const std::string& container) {
   lost(losses.sequence_numbers, "serial sequence numbers");
   lost(losses.radio_facts, "RSSI, link quality, channel or time slot");
   if (losses.more_facts) {
-    report::print(stderr,
-                  "rubric: of {} packets RSSI, link quality, channel and time slot are kept, other "
-                  "facts of their TAP headers are not\n",
-                  losses.more_facts);
+    text::print(stderr,
+                "rubric: of {} packets RSSI, link quality, channel and time slot are kept, other "
+                "facts of their TAP headers are not\n",
+                losses.more_facts);
   }
   if (container == "hex" && losses.radio && losses.radio != losses.written) {
-    report::print(stderr,
-                  "rubric: hex does not say which lines are radio frames; --only keeps one "
-                  "framing\n");
+    text::print(stderr,
+                "rubric: hex does not say which lines are radio frames; --only keeps one "
+                "framing\n");
   }
 }
 

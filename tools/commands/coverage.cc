@@ -27,7 +27,7 @@
 namespace rubric::tools {
 namespace {
 
-using report::Json;
+using text::Json;
 
 const std::size_t kRules = reflect::requirements().size();
 
@@ -251,7 +251,7 @@ int run_coverage(const CoverageOptions& options) {
   try {
     coverage = measure(options);
   } catch (const std::exception& error) {
-    report::print(stderr, "rubric: {}\n", error.what());
+    text::print(stderr, "rubric: {}\n", error.what());
     return cli::kExitInput;
   }
   const std::string text = options.format == "json" ? json_of(coverage) : text_of(coverage);

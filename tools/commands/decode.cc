@@ -223,8 +223,8 @@ class Decode {
     if (threads_) threads_->finish();
     const bool written = output_.finish();
     if (result.live) {
-      report::print(stderr, "rubric: {} frames, {} malformed, {} shown\n", sum_.frames,
-                    sum_.malformed, sum_.shown);
+      text::print(stderr, "rubric: {} frames, {} malformed, {} shown\n", sum_.frames,
+                  sum_.malformed, sum_.shown);
     }
     // A source that cannot be had costs no file.
     const bool kept = !capture_ || (result.failed && !capture_->is_started()) || capture_->finish();
@@ -274,7 +274,7 @@ class Decode {
 
   void say(const std::vector<cli::OtherSpecs::Hint>& hints) {
     for (const cli::OtherSpecs::Hint& hint : hints) {
-      if (said_.insert(hint.about).second) report::print(stderr, "{}", hint.text);
+      if (said_.insert(hint.about).second) text::print(stderr, "{}", hint.text);
     }
   }
 

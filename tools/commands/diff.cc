@@ -57,12 +57,12 @@ void compare(const DiffOptions& options) {
   const shrink::DifferenceSearch found =
       shrink::find_difference(pointers, players[0]->player(), players[1]->player());
   if (found.compared == 0) {
-    report::print(stderr, "no case could be run on both\n");
+    text::print(stderr, "no case could be run on both\n");
     cli::exit_with(cli::kExitIncomplete);
   }
-  report::print(stderr, "{} cases compared, {} differ, {} that one of them cannot play\n",
-                found.compared, found.different.size(), found.skipped);
-  for (const std::string& name : found.different) report::print(stderr, "  {}\n", name);
+  text::print(stderr, "{} cases compared, {} differ, {} that one of them cannot play\n",
+              found.compared, found.different.size(), found.skipped);
+  for (const std::string& name : found.different) text::print(stderr, "  {}\n", name);
   if (!found.shortest) {
     if (found.different.empty()) return;
     throw runner::TargetBroken("they differ by chance only: not twice in the same case");

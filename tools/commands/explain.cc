@@ -165,7 +165,7 @@ int run_explain(const ExplainOptions& options) {
     nothing_of(options.words.front(), protocol);
   }
   cli::Output output;
-  output.buffer().append(report::harmless(text, report::Keep::kLines));
+  output.buffer().append(text::harmless(text, text::Keep::kLines));
   return output.finish() ? code : cli::kExitOutput;
 }
 

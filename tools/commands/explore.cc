@@ -33,7 +33,7 @@ using explore::Mask;
 using explore::Progress;
 using explore::Result;
 using explore::Scope;
-using report::Json;
+using text::Json;
 
 struct ExploreOptions {
   explore::Options network;
@@ -326,7 +326,7 @@ void run_explore(const ExploreOptions& options) {
   if (options.format == "json") {
     good = cli::write_file("-", json_of(options, result, verdict, text)) && good;
   } else if (trace_alone) {
-    report::print(stderr, "{}", text_of(result, verdict));
+    text::print(stderr, "{}", text_of(result, verdict));
     good = cli::write_file("-", text) && good;
   } else {
     good = cli::write_file("-", text_of(result, verdict)) && good;

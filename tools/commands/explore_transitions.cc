@@ -21,7 +21,7 @@ namespace {
 
 using explore::Diagram;
 using explore::Transition;
-using report::Json;
+using text::Json;
 
 std::string one_line(std::string text) {
   std::replace(text.begin(), text.end(), '\n', ' ');
@@ -63,7 +63,7 @@ Json json_of(const Diagram& diagram) {
 // Escapes text for HTML-like labels of Graphviz.
 std::string html(std::string_view text) {
   std::string out;
-  for (const char c : report::xml_text(text)) {
+  for (const char c : text::xml_text(text)) {
     if (c == '\n') {
       out += "<BR/>";
     } else {
@@ -161,7 +161,7 @@ std::string dot_of(const Diagram& diagram) {
       "  node [shape=box, style=rounded, fontname=\"Courier\", fontsize=12, margin=\"0.05\"];\n"
       "  edge [fontname=\"Courier\", fontsize=12, arrowsize=0.8];\n"
       "  start [shape=point, width=0.12];\n",
-      diagram.name, report::json_string(diagram.title));
+      diagram.name, text::json_string(diagram.title));
   std::vector<bool> reached(diagram.states.size());
   reached[0] = true;
   Edges edges;

@@ -52,14 +52,14 @@ void check_capture(const std::string& path) {
 }
 
 void print_summary(const std::string& source, const forward::Counts& counts) {
-  report::print(stderr, "rubric: {}: {} packets from it ({} malformed frames), {} to it", source,
-                counts.from_source, counts.malformed, counts.to_source);
-  if (counts.withheld) report::print(stderr, ", {} not passed on", counts.withheld);
-  if (counts.unconfirmed) report::print(stderr, ", {} not confirmed", counts.unconfirmed);
-  if (counts.not_sent) report::print(stderr, ", {} not sent", counts.not_sent);
-  report::print(stderr, "; {} clients, {} cut off", counts.served, counts.cut_off);
-  if (counts.refused) report::print(stderr, ", {} refused", counts.refused);
-  report::print(stderr, "\n");
+  text::print(stderr, "rubric: {}: {} packets from it ({} malformed frames), {} to it", source,
+              counts.from_source, counts.malformed, counts.to_source);
+  if (counts.withheld) text::print(stderr, ", {} not passed on", counts.withheld);
+  if (counts.unconfirmed) text::print(stderr, ", {} not confirmed", counts.unconfirmed);
+  if (counts.not_sent) text::print(stderr, ", {} not sent", counts.not_sent);
+  text::print(stderr, "; {} clients, {} cut off", counts.served, counts.cut_off);
+  if (counts.refused) text::print(stderr, ", {} refused", counts.refused);
+  text::print(stderr, "\n");
 }
 
 int run_forward(ForwardOptions& options) {
@@ -91,9 +91,9 @@ int run_forward(ForwardOptions& options) {
     if (server.capture_failed()) return cli::kExitOutput;
     return whole ? cli::kExitClean : cli::kExitInput;
   } catch (const runner::TargetBroken& broken) {
-    report::print(stderr, "rubric: {}\n", broken.what());
+    text::print(stderr, "rubric: {}\n", broken.what());
   } catch (const std::system_error& error) {
-    report::print(stderr, "rubric: {}\n", error.what());
+    text::print(stderr, "rubric: {}\n", error.what());
   }
   return cli::kExitInput;
 }

@@ -33,7 +33,7 @@ using generate::Framed;
 using generate::FrameGenerator;
 using generate::Framer;
 using reflect::Route;
-using report::Json;
+using text::Json;
 
 Json error_json(const Error& error, const Json::Members& more = {}) {
   if (error.fault == Fault::kNone) return Json::raw("");
@@ -241,12 +241,12 @@ class Run {
       return true;
     });
     if (!left_out.empty()) {
-      report::print(stderr, "rubric: {} holds no radio frames: left out {}\n", options_.format,
-                    fmt::join(left_out, ", "));
+      text::print(stderr, "rubric: {} holds no radio frames: left out {}\n", options_.format,
+                  fmt::join(left_out, ", "));
     }
     if (options_.count < messages_.size()) {
-      report::print(stderr, "rubric: {} of {} messages do not come up; --count {} has them all\n",
-                    messages_.size() - options_.count, messages_.size(), messages_.size());
+      text::print(stderr, "rubric: {} of {} messages do not come up; --count {} has them all\n",
+                  messages_.size() - options_.count, messages_.size(), messages_.size());
     }
     for (std::size_t i = messages_.size(); i > 1; --i) {
       std::swap(messages_[i - 1], messages_[frames_.random().below(i)]);

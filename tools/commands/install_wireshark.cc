@@ -51,7 +51,7 @@ struct InstallWiresharkOptions {
 
 [[noreturn]] void refuse(const fs::path& path, const std::string& why,
                          int code = cli::kExitOutput) {
-  report::print(stderr, "rubric install-wireshark: {}: {}\n", path.string(), why);
+  text::print(stderr, "rubric install-wireshark: {}: {}\n", path.string(), why);
   cli::exit_with(code);
 }
 
@@ -111,16 +111,16 @@ class Place {
   const fs::path& path() const { return path_; }
 
   void remove() const {
-    if (!is_there(path_)) return report::print(stdout, "not there: {}\n", path_.string());
-    if (options_.dry_run) return report::print(stdout, "would remove {}\n", path_.string());
+    if (!is_there(path_)) return text::print(stdout, "not there: {}\n", path_.string());
+    if (options_.dry_run) return text::print(stdout, "would remove {}\n", path_.string());
     std::error_code error;
     fs::remove(path_, error);
     if (error) refuse(path_, error.message());
-    report::print(stdout, "removed {}\n", path_.string());
+    text::print(stdout, "removed {}\n", path_.string());
   }
 
   void write(std::string_view text) const {
-    if (options_.dry_run) return report::print(stdout, "would write {}\n", path_.string());
+    if (options_.dry_run) return text::print(stdout, "would write {}\n", path_.string());
     clear();
     if (!cli::write_file(beside_.string(), text)) {
       std::error_code error;
@@ -128,12 +128,12 @@ class Place {
       cli::exit_with(cli::kExitOutput);
     }
     replace();
-    report::print(stdout, "wrote {}\n", path_.string());
+    text::print(stdout, "wrote {}\n", path_.string());
   }
 
   void link(const fs::path& to) const {
     if (options_.dry_run)
-      return report::print(stdout, "would link {} to {}\n", path_.string(), to.string());
+      return text::print(stdout, "would link {} to {}\n", path_.string(), to.string());
     clear();
     std::error_code error;
     fs::create_symlink(to, beside_, error);
@@ -141,8 +141,8 @@ class Place {
     if (!linked) fs::copy_file(to, beside_, error);  // With its permissions.
     if (error) give_up(error);
     replace();
-    if (linked) return report::print(stdout, "linked {} to {}\n", path_.string(), to.string());
-    report::print(stdout, "copied {} to {}\n", to.string(), path_.string());
+    if (linked) return text::print(stdout, "linked {} to {}\n", path_.string(), to.string());
+    text::print(stdout, "copied {} to {}\n", to.string(), path_.string());
   }
 
  private:
@@ -196,9 +196,9 @@ void install(const InstallWiresharkOptions& options) {
   dissector.write(more.empty() ? wireshark::dissector() : more);
   extcap.link(program);
   if (options.dry_run) return;
-  report::print(stdout,
-                "Wireshark shows it, when it is started anew, as 'RUBICON mote or sink'. Or:\n"
-                "  tshark -i rubric -o extcap.rubric.source:serial@/dev/ttyUSB0:telosb\n");
+  text::print(stdout,
+              "Wireshark shows it, when it is started anew, as 'RUBICON mote or sink'. Or:\n"
+              "  tshark -i rubric -o extcap.rubric.source:serial@/dev/ttyUSB0:telosb\n");
 }
 
 }  // namespace
@@ -223,7 +223,7 @@ void add_install_wireshark(cli::Command& app) {
       install(*options);
     } catch (const std::runtime_error& error) {
       if (dynamic_cast<const cli::Ending*>(&error)) throw;
-      report::print(stderr, "rubric install-wireshark: {}\n", error.what());
+      text::print(stderr, "rubric install-wireshark: {}\n", error.what());
       cli::exit_with(cli::kExitInput);
     }
   });

@@ -18,7 +18,7 @@ namespace {
 using explain::Reach;
 using reflect::Protocol;
 using reflect::Type;
-using report::Json;
+using text::Json;
 
 struct MessagesOptions {
   cli::InputOptions input;  // Only the choice of the protocol.
@@ -121,7 +121,7 @@ void add_messages(cli::Command& app) {
     cli::Output output;
     output.buffer().append(options->format == "json"
                                ? json(protocol)
-                               : report::harmless(text(protocol), report::Keep::kLines));
+                               : text::harmless(text(protocol), text::Keep::kLines));
     if (!output.finish()) cli::exit_with(cli::kExitOutput);
   });
 }

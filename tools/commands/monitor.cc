@@ -92,7 +92,7 @@ class Screen {
     output_.flush();
   }
 
-  void print(std::string_view line) { put(report::harmless(line) + '\n'); }
+  void print(std::string_view line) { put(text::harmless(line) + '\n'); }
   bool open() const { return output_.open(); }
   bool finish() { return output_.finish(); }
 
@@ -107,7 +107,7 @@ class Screen {
     if (lines.size() + news + 2 > height) {
       const std::size_t more = lines.size() + news + 3 - height;
       lines.resize(lines.size() - more);
-      lines.push_back(fmt::format("and {}", report::counted(more, "node")));
+      lines.push_back(fmt::format("and {}", text::counted(more, "node")));
     }
     lines.emplace_back();
     for (std::string& line : board.last_news(height - lines.size() - 1)) {
@@ -120,10 +120,10 @@ class Screen {
 
   // At most so many characters, none of them cut.
   static std::string clipped(const std::string& line, std::size_t width) {
-    const std::string safe = report::harmless(line);
+    const std::string safe = text::harmless(line);
     std::size_t at = 0;
     for (std::size_t shown = 0; at < safe.size() && shown < width; ++shown) {
-      at += std::max<std::size_t>(1, report::utf8_length(std::string_view(safe).substr(at)));
+      at += std::max<std::size_t>(1, text::utf8_length(std::string_view(safe).substr(at)));
     }
     return safe.substr(0, at);
   }
@@ -163,7 +163,7 @@ class LiveCheck {
       if (finding.severity == check::Severity::kNote) continue;
       const bool withdrawn = change.what == check::Change::What::kWithdrawn;
       board.add_news(fmt::format("{}{} {}, {}, {}: {}", withdrawn ? "WITHDRAWN " : "",
-                                 report::in_capitals(report::severity_name(finding.severity)),
+                                 text::in_capitals(report::severity_name(finding.severity)),
                                  reflect::requirement(finding.requirement).id, finding.node,
                                  report::place_text(follow_.run(), finding.place),
                                  withdrawn ? change.why : finding.text),
@@ -176,8 +176,8 @@ class LiveCheck {
     if (!follow_.judge()) return "Check: " + follow_.why();
     const check::Report& report = follow_.report();
     return fmt::format("Check: {}, {}, {}", report::verdict_name(report.verdict),
-                       report::counted(report.frames, "frame"),
-                       report::counted(report.findings.size(), "finding"));
+                       text::counted(report.frames, "frame"),
+                       text::counted(report.findings.size(), "finding"));
   }
   bool failed() const { return follow_.report().verdict == check::Verdict::kFail; }
 
@@ -268,7 +268,7 @@ int run_monitor(const MonitorOptions& options) {
   try {
     return Monitor(options).run();
   } catch (const lines::Broken& broken) {
-    report::print(stderr, "rubric monitor: {}\n", broken.what());
+    text::print(stderr, "rubric monitor: {}\n", broken.what());
     return cli::kExitInput;
   } catch (const std::invalid_argument& mistake) {
     throw cli::UsageError("--credentials", mistake.what());

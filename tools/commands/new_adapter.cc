@@ -51,7 +51,7 @@ const Language& language_of(const std::string& name) {
 }
 
 [[noreturn]] void refuse(const std::string& path, const std::string& why) {
-  report::print(stderr, "rubric new-adapter: cannot write {}: {}\n", path, why);
+  text::print(stderr, "rubric new-adapter: cannot write {}: {}\n", path, why);
   cli::exit_with(cli::kExitOutput);
 }
 
@@ -73,12 +73,12 @@ void write_skeleton(const NewAdapterOptions& options) {
   }
   for (const auto& [path, text] : files) {
     if (!cli::write_file(path.string(), text)) cli::exit_with(cli::kExitOutput);
-    report::print(stdout, "wrote {}\n", path.lexically_normal().string());
+    text::print(stdout, "wrote {}\n", path.lexically_normal().string());
   }
-  report::print(stdout, "Next:\n");
-  if (options.out != ".") report::print(stdout, "  cd {}\n", options.out);
-  if (*language.build) report::print(stdout, "  {}\n", language.build);
-  report::print(stdout, "  rubric test --target '{}' --expect {}\n", language.target, kKnown);
+  text::print(stdout, "Next:\n");
+  if (options.out != ".") text::print(stdout, "  cd {}\n", options.out);
+  if (*language.build) text::print(stdout, "  {}\n", language.build);
+  text::print(stdout, "  rubric test --target '{}' --expect {}\n", language.target, kKnown);
 }
 
 }  // namespace

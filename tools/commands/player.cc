@@ -43,10 +43,10 @@ void run_player_command(const cli::Command& app, const std::function<void()>& wo
   } catch (const std::invalid_argument& error) {
     throw cli::UsageError(error.what());
   } catch (const runner::TargetBroken& error) {
-    report::print(stderr, "rubric {}: {}\n", app.name(), error.what());
+    text::print(stderr, "rubric {}: {}\n", app.name(), error.what());
     cli::exit_with(cli::kExitBroken);
   } catch (const std::runtime_error& error) {
-    report::print(stderr, "rubric {}: {}\n", app.name(), error.what());
+    text::print(stderr, "rubric {}: {}\n", app.name(), error.what());
     cli::exit_with(cli::kExitInput);
   }
 }

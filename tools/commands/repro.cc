@@ -102,7 +102,7 @@ void run_repro(const ReproOptions& options) {
   std::string text;
   std::string error;
   if (!cli::read_file(options.input, text, error)) {
-    report::print(stderr, "{}\n", error);
+    text::print(stderr, "{}\n", error);
     cli::exit_with(cli::kExitInput);
   }
   const Bytes bytes(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
@@ -112,8 +112,7 @@ void run_repro(const ReproOptions& options) {
   if (!cli::write_file(options.out, trace::print(repro.file))) {
     cli::exit_with(cli::kExitOutput);
   }
-  report::print(stderr, "{}\n",
-                repro.found.empty() ? "nothing is broken" : "broken: " + repro.found);
+  text::print(stderr, "{}\n", repro.found.empty() ? "nothing is broken" : "broken: " + repro.found);
   if (!repro.found.empty()) cli::exit_with(cli::kExitFindings);
 }
 

@@ -130,13 +130,13 @@ int run_station(const RunOptions& options) {
   open_files(options, {run::header_of(setup)}, setup.seed, keeper);
   run::Station station(setup, keeper);
   if (setup.role != node::Role::kBaseStation && setup.air.port == 0) {
-    report::print(stderr, "rubric: zep:{}\n", station.air_port());
+    text::print(stderr, "rubric: zep:{}\n", station.air_port());
   }
   if (!setup.offered.empty()) {
     const std::string& name = station.serial_address();
     const bool server = name.starts_with("sf@");
-    report::print(stderr, "rubric: {}{}\n", server ? "sf-server" : name,
-                  server ? name.substr(name.rfind(':')) : "");
+    text::print(stderr, "rubric: {}{}\n", server ? "sf-server" : name,
+                server ? name.substr(name.rfind(':')) : "");
   }
   const bool calls = options.app == "-";
   run::JsonApplication lines(
@@ -159,7 +159,7 @@ int run_station(const RunOptions& options) {
   if (options.is_proxy()) {
     proxy.emplace(setup.island, static_cast<std::uint16_t>(options.listen));
     if (!options.network.empty()) proxy->add_lines(*lines_network(options.network));
-    report::print(stderr, "rubric: proxy at 127.0.0.1:{}\n", proxy->port());
+    text::print(stderr, "rubric: proxy at 127.0.0.1:{}\n", proxy->port());
     station.add(*proxy);
   }
   station.run(lines::stop_requested);
@@ -170,7 +170,7 @@ int run_file(const RunOptions& options) {
   std::string text;
   std::string error;
   if (!cli::read_file(options.role, text, error)) {
-    report::print(stderr, "rubric: {}\n", error);
+    text::print(stderr, "rubric: {}\n", error);
     return cli::kExitInput;
   }
   run::Ecology ecology = run::parse_ecology(text, options.role);
@@ -237,16 +237,16 @@ int run_node(const RunOptions& options) {
   try {
     return is_file(options.role) ? run_file(options) : run_station(options);
   } catch (const lines::Broken& broken) {
-    report::print(stderr, "rubric: {}\n", broken.what());
+    text::print(stderr, "rubric: {}\n", broken.what());
   } catch (const std::system_error& error) {
-    report::print(stderr, "rubric: {}\n", error.what());
+    text::print(stderr, "rubric: {}\n", error.what());
   } catch (const cli::Ending&) {
     throw;
   } catch (const std::invalid_argument& mistake) {
-    report::print(stderr, "rubric: {}\n", mistake.what());
+    text::print(stderr, "rubric: {}\n", mistake.what());
     return cli::kExitUsage;
   } catch (const std::runtime_error& mistake) {
-    report::print(stderr, "rubric: {}\n", mistake.what());
+    text::print(stderr, "rubric: {}\n", mistake.what());
     return cli::kExitUsage;
   }
   return cli::kExitInput;

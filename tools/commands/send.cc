@@ -175,7 +175,7 @@ class Send {
     }
     if (packets_ > 0) sender_.hear(steady_clock::now() + Milliseconds{options_.interval_ms});
     if (lines::stop_requested()) {
-      report::print(stderr, "rubric: {}: stopped before this was sent\n", place);
+      text::print(stderr, "rubric: {}: stopped before this was sent\n", place);
       unsent_ = true;
       return false;
     }
@@ -185,9 +185,9 @@ class Send {
     if (result.done) return true;
     unsent_ = true;
     if (options_.keep_going && !lines::stop_requested()) return true;
-    report::print(stderr, "rubric: {}: {}; nothing after it is sent{}\n", place,
-                  lines::stop_requested() ? "stopped" : "not confirmed",
-                  lines::stop_requested() ? "" : " (--keep-going would)");
+    text::print(stderr, "rubric: {}: {}; nothing after it is sent{}\n", place,
+                lines::stop_requested() ? "stopped" : "not confirmed",
+                lines::stop_requested() ? "" : " (--keep-going would)");
     return false;
   }
 
@@ -215,7 +215,7 @@ class Send {
     }
     text += '\n';
     if (options_.format == "jsonl") {  // Its lines are the frames that come alone.
-      report::print(stderr, "{}", text);
+      text::print(stderr, "{}", text);
       return;
     }
     output_.buffer().append(text);
@@ -240,7 +240,7 @@ class Send {
   }
 
   void line_is_gone(const char* what) {
-    report::print(stderr, "rubric: {}: {}\n", name_, what);
+    text::print(stderr, "rubric: {}: {}\n", name_, what);
     unsent_ = true;
   }
 
@@ -256,7 +256,7 @@ class Send {
       text += ", " + counted(left_out_, "frame", "frames") + " without a packet left out";
     }
     if (options_.listen_s) text += ", " + fmt::format("{} came", frames_);
-    report::print(stderr, "rubric: {}\n", text);
+    text::print(stderr, "rubric: {}\n", text);
   }
 
   const SendOptions& options_;

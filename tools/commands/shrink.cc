@@ -92,7 +92,7 @@ void shrink_it(const ShrinkOptions& options) {
   cli::keep_apart("--out", options.shared.out, {options.trace});
   const auto found = find_failing(cases, options, player);
   if (!found) {
-    report::print(stderr, "nothing fails: there is nothing to shrink\n");
+    text::print(stderr, "nothing fails: there is nothing to shrink\n");
     cli::exit_with(cli::kExitIncomplete);
   }
   const trace::Case& one = found->file.cases.at(0);
@@ -109,8 +109,8 @@ void shrink_it(const ShrinkOptions& options) {
       {fmt::format("{} of the {} lines of {}.", shrunk.lines, shrunk.lines_before, name),
        fmt::format("On {}: {}", attached.name(), outcome_text(last))});
   if (!cli::write_file(options.shared.out, text)) cli::exit_with(cli::kExitOutput);
-  report::print(stderr, "{}: {} lines shrank to {} in {} runs\n{}\n", name, shrunk.lines_before,
-                shrunk.lines, shrunk.tried, outcome_text(last));
+  text::print(stderr, "{}: {} lines shrank to {} in {} runs\n{}\n", name, shrunk.lines_before,
+              shrunk.lines, shrunk.tried, outcome_text(last));
 }
 
 }  // namespace

@@ -272,7 +272,7 @@ bool write_formats(const TestOptions& options, const suite::SuiteRun& run,
   const bool keep = suite::exit_code(run) == cli::kExitBroken && options.out != "-" &&
                     std::filesystem::is_regular_file(options.out);
   if (keep && options.format != "text") {
-    report::print(stderr, "rubric test: the run broke; {} stays as it was\n", options.out);
+    text::print(stderr, "rubric test: the run broke; {} stays as it was\n", options.out);
   } else if (options.format == "json") {
     good = cli::write_file(options.out, suite::json_report(run));
   } else if (options.format == "junit") {
@@ -282,7 +282,7 @@ bool write_formats(const TestOptions& options, const suite::SuiteRun& run,
   }
   const char* actions = std::getenv("GITHUB_ACTIONS");
   if (actions && std::string_view(actions) == "true") {
-    report::print(stderr, "{}", suite::github_annotations(run));
+    text::print(stderr, "{}", suite::github_annotations(run));
   }
   return (options.report.empty() || write_folder(options, run, earlier)) && good;
 }

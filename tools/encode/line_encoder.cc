@@ -136,7 +136,7 @@ bool EncodedLines::all() {
 }
 
 void EncodedLines::complain(const std::string& place, std::string_view what) {
-  report::print(stderr, "rubric: {}: {}\n", place, what);
+  text::print(stderr, "rubric: {}: {}\n", place, what);
   good_ = false;
 }
 

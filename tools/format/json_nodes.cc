@@ -78,7 +78,7 @@ char* JsonNodes::value(char* at, const Decoded& decoded, std::size_t node) const
     case NodeKind::kBytes: break;
   }
   const Bytes bytes = decoded.bytes.sub(n.offset, n.size);
-  if (is_text(n.field)) return report::put_json_string(at, reflect::shown_text(*n.field, bytes));
+  if (is_text(n.field)) return text::put_json_string(at, reflect::shown_text(*n.field, bytes));
   return put_quoted_hex(at, bytes);
 }
 

@@ -128,7 +128,7 @@ char* put_stale_and_raw(char* at, const Decoded& decoded) {
 void append_text_member(Buffer& out, std::string_view key, std::string_view text) {
   out.append(key);
   char* at = out.reserve(6 * text.size() + 2);
-  out.commit(report::put_json_string(at, text));
+  out.commit(text::put_json_string(at, text));
 }
 
 void append_uint(Buffer& out, std::uint64_t value) {
@@ -197,13 +197,13 @@ void JsonlFormatter::print(const Record& record, Buffer& out) {
   at = put_uint(put(at, ",\"offset\":"), packet.offset_bytes);
   at = put(at, ",\"time\":");
   if (!record.time_text.empty()) {
-    at = report::put_json_string(at, record.time_text);
+    at = text::put_json_string(at, record.time_text);
   } else {
     at = record.time_ns == kNoTime ? put(at, "null") : put_time(at, record.time_ns);
   }
   at = put(at, ",\"interface\":");
   at = record.interface_name.empty() ? put(at, "null")
-                                     : report::put_json_string(at, record.interface_name);
+                                     : text::put_json_string(at, record.interface_name);
   switch (packet.direction) {
     case Direction::kInbound: at = put(at, ",\"direction\":\"inbound\""); break;
     case Direction::kOutbound: at = put(at, ",\"direction\":\"outbound\""); break;

@@ -38,7 +38,7 @@ void append_bits(const reflect::MaskTable& mask, std::int64_t value, Buffer& out
 
 std::string quoted(std::string_view text) {
   std::string out = "\"";
-  for (const char c : report::harmless(text)) {
+  for (const char c : text::harmless(text)) {
     if (c == '"' || c == '\\') out += '\\';
     out += c;
   }
@@ -54,7 +54,7 @@ void append_plain_value(const Value& value, const Record& record, const JsonNode
       break;
     case Value::Kind::kReal: append_real(value.real, value.field != nullptr, out); break;
     case Value::Kind::kTime: out.commit(put_time(out.reserve(kMaxTimeChars), value.integer)); break;
-    case Value::Kind::kText: out.append(report::harmless(value.text)); break;
+    case Value::Kind::kText: out.append(text::harmless(value.text)); break;
     case Value::Kind::kBits: append_bits(*value.field->mask, value.integer, out); break;
     case Value::Kind::kBytes:
       out.commit(put_hex(out.reserve(2 * value.bytes.size()), value.bytes));

@@ -18,7 +18,7 @@ void append_plain_values(const Path& path, const Record& record, const JsonNodes
 /// for none.
 void append_bits(const reflect::MaskTable& mask, std::int64_t value, Buffer& out);
 
-/// Returns report::harmless() of the text in quotes, with those within it escaped.
+/// Returns text::harmless() of the text in quotes, with those within it escaped.
 std::string quoted(std::string_view text);
 
 }  // namespace rubric::format

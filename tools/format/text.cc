@@ -350,7 +350,7 @@ void append_origin(const Record& record, Buffer& out) {
   const bool named = !record.interface_name.empty();
   if (named) {
     const std::size_t start = out.size();
-    out.append(report::harmless(record.interface_name));
+    out.append(text::harmless(record.interface_name));
     pad(out, start, 8);
   }
   switch (packet.direction) {

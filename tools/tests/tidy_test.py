@@ -72,7 +72,7 @@ WIRE_BY_HAND = [
     (re.compile(r"\b(?:rubicon|tinyos)::(?!\w+(?:View|Layout|Builder)\b)[A-Z]\w+(?: \w+)?"
                 r"\{\s*[^}\s]|Layout::store\(\{"), "the fields of a structure by their order"),
 ]
-# What people read is printed by report::print(), which makes it harmless for terminals. These print
+# What people read is printed by text::print(), which makes it harmless for terminals. These print
 # for programs, or draw over a line of their own; node and adapters share nothing with the tools.
 PRINTED = re.compile(r"\bfmt::print\((?!f)|\bstd::c(?:err|out)\b|\bf?puts\(.*\bstd(?:err|out)\b")
 PRINTERS = ("codec/text/text.cc", "tools/cli/progress.cc", "tools/commands/completion.cc",
@@ -191,7 +191,7 @@ def print_breaches(path, lines):
         return
     for number, line in enumerate(lines, 1):
         if PRINTED.search(line.split("//")[0]):
-            yield f"{path}:{number}: prints what may not be harmless; report::print() does"
+            yield f"{path}:{number}: prints what may not be harmless; text::print() does"
 
 
 def folder_breaches(files):

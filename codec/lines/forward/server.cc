@@ -47,9 +47,8 @@ std::size_t clients_possible(std::size_t wanted) {
   ::getrlimit(RLIMIT_NOFILE, &limit);
   if (limit.rlim_cur >= needed) return wanted;
   const rlim_t left = std::max(limit.rlim_cur, kOtherDescriptors + 1) - kOtherDescriptors;
-  report::print(stderr,
-                "rubric: no more than {} clients at once: only {} descriptors are allowed\n", left,
-                limit.rlim_cur);
+  text::print(stderr, "rubric: no more than {} clients at once: only {} descriptors are allowed\n",
+              left, limit.rlim_cur);
   return static_cast<std::size_t>(left);
 }
 
@@ -92,21 +91,21 @@ void Server::on_given(bool confirmed) {
   ++(confirmed ? counts_.to_source : counts_.unconfirmed);
   if (confirmed == !unconfirmed_) return;
   unconfirmed_ = !confirmed;
-  report::print(stderr, "rubric: {}: {}\n", source_.name(),
-                confirmed ? "the mote confirms packets again"
-                          : "the mote does not confirm a packet; it is given up (said once)");
+  text::print(stderr, "rubric: {}: {}\n", source_.name(),
+              confirmed ? "the mote confirms packets again"
+                        : "the mote does not confirm a packet; it is given up (said once)");
 }
 
 void Server::announce() {
   if (announced_) return;
   announced_ = true;
-  report::print(stdout, "listening on {}\n", here_.text());
+  text::print(stdout, "listening on {}\n", here_.text());
   std::fflush(stdout);
   if (here_.is_loopback()) return;
-  report::print(stderr,
-                "rubric: WARNING: {} can be reached from other hosts: everybody who connects there "
-                "reads all packets and can send to the motes\n",
-                here_.text());
+  text::print(stderr,
+              "rubric: WARNING: {} can be reached from other hosts: everybody who connects there "
+              "reads all packets and can send to the motes\n",
+              here_.text());
 }
 
 void Server::open_source(Time now) {
@@ -146,12 +145,12 @@ void Server::connected() {
     return;
   }
   announce();
-  if (std::exchange(lost_, false)) report::print(stderr, "rubric: {}: again\n", source_.name());
+  if (std::exchange(lost_, false)) text::print(stderr, "rubric: {}: again\n", source_.name());
 }
 
 void Server::lose_source(const std::string& why, Time now) {
   source_.close(now);
-  if (!std::exchange(lost_, true)) report::print(stderr, "rubric: {}: {}\n", source_.name(), why);
+  if (!std::exchange(lost_, true)) text::print(stderr, "rubric: {}: {}\n", source_.name(), why);
   over_ = !options_.reconnect;
   if (over_) return;
   announce();
@@ -195,7 +194,7 @@ void Server::accept_clients(Time now) {
       return;
     } else if (errno != ECONNABORTED) {
       if (!std::exchange(full_, true)) {
-        report::print(stderr, "rubric: cannot take another client: {}\n", std::strerror(errno));
+        text::print(stderr, "rubric: cannot take another client: {}\n", std::strerror(errno));
       }
       accept_at_ = now + kNoRoomPause;
       return;
@@ -208,13 +207,13 @@ void Server::admit(lines::Descriptor socket, Time now) {
   if (clients_.size() >= options_.clients_max && !make_room(now)) {
     ++counts_.refused;
     if (!std::exchange(full_, true)) {
-      report::print(stderr, "rubric: client {} is refused: there are {} already (--clients)\n",
-                    name, clients_.size());
+      text::print(stderr, "rubric: client {} is refused: there are {} already (--clients)\n", name,
+                  clients_.size());
     }
     return;
   }
   ++counts_.served;
-  if (options_.verbose) report::print(stderr, "rubric: client {} has come\n", name);
+  if (options_.verbose) text::print(stderr, "rubric: client {} has come\n", name);
   clients_.push_back(
       std::make_unique<Client>(std::move(socket), name, backlog_.end(), options_.limits, now));
 }
@@ -226,8 +225,8 @@ bool Server::make_room(Time now) {
                                  [](const auto& client) { return client->has_left(); });
   if (gone == clients_.end()) return end_most_silent(now);
   counts_.not_sent += (*gone)->packets_waiting();
-  report::print(stderr, "rubric: client {} has left; {} packets of it are given up\n",
-                (*gone)->name(), (*gone)->packets_waiting());
+  text::print(stderr, "rubric: client {} has left; {} packets of it are given up\n",
+              (*gone)->name(), (*gone)->packets_waiting());
   clients_.erase(gone);
   return true;
 }
@@ -238,8 +237,8 @@ bool Server::end_most_silent(Time now) {
                        [](const auto& a, const auto& b) { return a->heard() < b->heard(); });
   const auto time = now - (*silent)->heard();
   if (time < kSilentPatiences * options_.limits.patience) return false;
-  report::print(stderr, "rubric: client {} gives way: it has sent nothing for {:.0f} s\n",
-                (*silent)->name(), std::chrono::duration<double>(time).count());
+  text::print(stderr, "rubric: client {} gives way: it has sent nothing for {:.0f} s\n",
+              (*silent)->name(), std::chrono::duration<double>(time).count());
   ++counts_.cut_off;
   clients_.erase(silent);
   return true;
@@ -256,11 +255,11 @@ void Server::remove_clients() {
     if (!client->fault().empty()) {
       ++counts_.cut_off;
       counts_.not_sent += client->packets_waiting();
-      report::print(stderr, "rubric: client {} is cut off: {}\n", client->name(), client->fault());
+      text::print(stderr, "rubric: client {} is cut off: {}\n", client->name(), client->fault());
       return true;
     }
     if (!client->is_over()) return false;
-    if (options_.verbose) report::print(stderr, "rubric: client {} has left\n", client->name());
+    if (options_.verbose) text::print(stderr, "rubric: client {} has left\n", client->name());
     return true;
   };
   if (std::erase_if(clients_, done) > 0) full_ = false;

@@ -43,7 +43,7 @@ std::string chart(const Scene& scene, const std::vector<std::size_t>& rows, std:
   for (const std::size_t i : rows) {
     const check::Observation& seen = scene.run().seen[i];
     SequenceRow row;
-    row.time = seconds_text(seen.place.time_us);
+    row.time = text::seconds_text(seen.place.time_us);
     row.number = std::to_string(seen.place.frame);
     row.label = scene.label(i);
     row.from = column(scene.sender(i));

@@ -59,9 +59,9 @@ std::string finding_html(const Story& story, std::size_t index, const TextOption
       "<details{}><summary><b class=\"{}\">{}</b>{} <code>{}</code> {} <span class=\"soft\">{}"
       "</span><br>{}</summary>\n<pre tabindex=\"0\">{}</pre></details>\n",
       open ? " open" : "", severity, severity, known ? " (known)" : "",
-      rule.empty() ? "no rule" : xml_text(rule), xml_text(finding.node),
-      xml_text(place_of(story, finding)), xml_text(finding.text),
-      xml_text(text_finding(story, index, options)));
+      rule.empty() ? "no rule" : text::xml_text(rule), text::xml_text(finding.node),
+      text::xml_text(place_of(story, finding)), text::xml_text(finding.text),
+      text::xml_text(text_finding(story, index, options)));
 }
 
 }  // namespace
@@ -81,16 +81,18 @@ std::string html_report(const Story& story, const TextOptions& options, std::str
                      story.outcome.unexpected_failures);
   out += "<ul>\n";
   for (const std::string& file : story.run.files) {
-    out += fmt::format("<li><code>{}</code></li>\n", xml_text(file));
+    out += fmt::format("<li><code>{}</code></li>\n", text::xml_text(file));
   }
   out += "</ul>\n";
-  for (const std::string& fact : found.facts) out += fmt::format("<p>{}</p>\n", xml_text(fact));
+  for (const std::string& fact : found.facts)
+    out += fmt::format("<p>{}</p>\n", text::xml_text(fact));
   out += "<h2>Findings</h2>\n";
   if (found.findings.empty()) out += "<p>None.</p>\n";
   for (const std::size_t i : in_order(story)) out += finding_html(story, i, options);
   out += "<h2>Rules that were kept</h2>\n<p>";
   for (const auto& [id, count] : found.exercised) {
-    out += fmt::format("<code>{}</code> {} times\n", xml_text(reflect::requirement(id).id), count);
+    out += fmt::format("<code>{}</code> {} times\n", text::xml_text(reflect::requirement(id).id),
+                       count);
   }
   return out + "</p>\n</main>\n</body>\n</html>\n";
 }

@@ -6,9 +6,9 @@
 
 namespace rubric::report {
 
-Json json_report(const Story& story);
+text::Json json_report(const Story& story);
 
 /// One object of its `findings`.
-Json json_finding(const Story& story, std::size_t index);
+text::Json json_finding(const Story& story, std::size_t index);
 
 }  // namespace rubric::report

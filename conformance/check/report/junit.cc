@@ -101,7 +101,8 @@ class Junit {
       out.outcome = JunitCase::Outcome::kSkipped;
       out.message = message(one.undecided);
     }
-    out.output = one.kept == 0 ? "never seen kept\n" : "kept " + counted(one.kept, "time") + "\n";
+    out.output =
+        one.kept == 0 ? "never seen kept\n" : "kept " + text::counted(one.kept, "time") + "\n";
     for (const std::size_t i : one.undecided) out.output += "inconclusive: " + line(i) + "\n";
     for (const std::size_t i : one.others) {
       const std::size_t by = story_.outcome.expected_by[i];

@@ -72,38 +72,39 @@ class TextReport {
   }
 
   void styled_line(std::string_view style, std::string_view head, std::string_view rest) {
-    out_ += styled(options_, style, head, rest);
+    out_ += text::styled(options_, style, head, rest);
   }
 
   void about_the_run() {
     for (std::size_t f = 0; f < story_.run.files.size(); ++f) {
       const bool several = story_.run.files.size() > 1;
-      const std::string name = harmless(story_.run.files[f]);
+      const std::string name = text::harmless(story_.run.files[f]);
       out_ += several ? fmt::format("{}. {}\n", f + 1, name) : name + "\n";
     }
     const check::Options& o = story_.options;
-    out_ += wrapped(
-        kIndent,
-        fmt::format("{}; profile {}, sniffer {}, start {}", counted(story_.report.frames, "frame"),
-                    o.deployed ? "deployed" : "paper", o.sniffer_complete ? "complete" : "unknown",
-                    o.start_cold ? "cold" : "unknown"),
+    out_ += text::wrapped(
+        text::kIndent,
+        fmt::format("{}; profile {}, sniffer {}, start {}",
+                    text::counted(story_.report.frames, "frame"), o.deployed ? "deployed" : "paper",
+                    o.sniffer_complete ? "complete" : "unknown", o.start_cold ? "cold" : "unknown"),
         options_.width);
     std::string all;
     for (const std::string& fact : story_.report.facts) all += (all.empty() ? "" : "; ") + fact;
     if (story_.report.facts.size() > kFactLines) {
-      out_ += wrapped(kIndent, all, options_.width);
+      out_ += text::wrapped(text::kIndent, all, options_.width);
     } else {
       for (const std::string& fact : story_.report.facts) {
-        out_ += wrapped(kIndent, fact, options_.width);
+        out_ += text::wrapped(text::kIndent, fact, options_.width);
       }
     }
     if (story_.report.frames == 0) {
-      out_ += wrapped(kIndent, "No frames of this protocol: there is nothing to judge.",
-                      options_.width);
+      out_ += text::wrapped(text::kIndent, "No frames of this protocol: there is nothing to judge.",
+                            options_.width);
     }
     if (!story_.run.has_time) {
-      out_ += wrapped(kIndent, "What has no time stamps is not judged by rules about time.",
-                      options_.width);
+      out_ +=
+          text::wrapped(text::kIndent, "What has no time stamps is not judged by rules about time.",
+                        options_.width);
     }
   }
 
@@ -126,7 +127,7 @@ class TextReport {
   }
 
   std::string head(std::size_t i) const {
-    std::string name = in_capitals(severity_name(story_.report.findings[i].severity));
+    std::string name = text::in_capitals(severity_name(story_.report.findings[i].severity));
     if (is_expected(i)) name = "EXPECTED " + name;
     return options_.head.empty() ? name : options_.head + " " + name;
   }
@@ -135,18 +136,18 @@ class TextReport {
     const Finding& finding = story_.report.findings[i];
     out_ += '\n';
     styled_line(style_of(finding.severity), head(i), heading(i));
-    out_ += wrapped(kIndent, finding.text, options_.width);
+    out_ += text::wrapped(text::kIndent, finding.text, options_.width);
     const reflect::Requirement& rule = reflect::requirement(finding.requirement);
     if (finding.requirement != ReqId::kNone) {
-      out_ += field("Rule:",
-                    fmt::format("{} ({} {}; {})", rule.sentence, rule.level, rule.id,
-                                *rule.source == '\0' ? rule.clause : rule.source),
-                    options_);
+      out_ += text::field("Rule:",
+                          fmt::format("{} ({} {}; {})", rule.sentence, rule.level, rule.id,
+                                      *rule.source == '\0' ? rule.clause : rule.source),
+                          options_);
     }
-    out_ += field("Allowed:", finding.expected, options_);
+    out_ += text::field("Allowed:", finding.expected, options_);
     if (is_expected(i)) {
-      out_ += field("Expected:", story_.expected.entries[story_.outcome.expected_by[i]].reason,
-                    options_);
+      out_ += text::field(
+          "Expected:", story_.expected.entries[story_.outcome.expected_by[i]].reason, options_);
     }
     hypotheses(finding);
     frames(finding);
@@ -157,17 +158,17 @@ class TextReport {
     if (finding.hypotheses.empty()) return;
     const bool one = finding.hypotheses.size() == 1;
     out_ += fmt::format(
-        "{}{}\n", kIndent,
+        "{}{}\n", text::kIndent,
         one ? "What could explain it:" : "What could explain it, the one that got furthest first:");
     for (std::size_t h = 0; h < finding.hypotheses.size(); ++h) {
       const check::Hypothesis& hypothesis = finding.hypotheses[h];
-      out_ += wrapped(fmt::format("{:>4}. ", h + 1), hypothesis.text, options_.width);
+      out_ += text::wrapped(fmt::format("{:>4}. ", h + 1), hypothesis.text, options_.width);
       const std::string_view miss = h == 0 ? "nearest miss:" : "missed:";
       if (!hypothesis.allowed.empty()) {
-        out_ += wrapped("      allowed next: ", hypothesis.allowed, options_.width);
+        out_ += text::wrapped("      allowed next: ", hypothesis.allowed, options_.width);
       }
       if (!hypothesis.miss.empty()) {
-        out_ += wrapped(fmt::format("      {:<13} ", miss), hypothesis.miss, options_.width);
+        out_ += text::wrapped(fmt::format("      {:<13} ", miss), hypothesis.miss, options_.width);
       }
     }
   }
@@ -209,20 +210,20 @@ class TextReport {
     if (node == kNobody && at < all) node = scene_->sender(at);
     const std::vector<std::size_t> rows = window(at, node);
     if (rows.empty()) return;
-    out_ += fmt::format("{}Frames{}:\n", kIndent,
-                        node == kNobody ? "" : " of " + harmless(scene_->name(node)));
+    out_ += fmt::format("{}Frames{}:\n", text::kIndent,
+                        node == kNobody ? "" : " of " + text::harmless(scene_->name(node)));
     for (const std::size_t i : rows) {
       const check::Place& place = story_.run.seen[i].place;
       std::string where = fmt::format("{} {:>5}", i == at ? '>' : ' ', place.frame);
       if (story_.run.files.size() > 1) where += fmt::format(" of {}", place.file + 1);
       where += fmt::format("  offset {}", place.offset_bytes);
-      if (place.time_us >= 0) where += fmt::format(", {} s", seconds_text(place.time_us));
-      out_ += fmt::format("{}{}, {}\n", kIndent, where, harmless(scene_->route(i)));
+      if (place.time_us >= 0) where += fmt::format(", {} s", text::seconds_text(place.time_us));
+      out_ += fmt::format("{}{}, {}\n", text::kIndent, where, text::harmless(scene_->route(i)));
       constexpr std::string_view kDeep = "             ";
-      const std::string message = harmless(scene_->message(i));
+      const std::string message = text::harmless(scene_->message(i));
       // Shows the frame in question in full, the others on one line each.
       if (i == at || kDeep.size() + message.size() <= options_.width) {
-        out_ += wrapped(kDeep, message, options_.width, kDeep.size() + 2);
+        out_ += text::wrapped(kDeep, message, options_.width, kDeep.size() + 2);
       } else {
         const std::size_t room = options_.width - kDeep.size() - 3;
         const std::size_t end = std::min(message.rfind(' ', room), room);
@@ -241,8 +242,8 @@ class TextReport {
       }
     }
     // A command is meant to be copied, so it is not broken.
-    out_ +=
-        fmt::format("\n{}Again:    {}{}{}\n", kIndent, options_.command, options_.files, ranges);
+    out_ += fmt::format("\n{}Again:    {}{}{}\n", text::kIndent, options_.command, options_.files,
+                        ranges);
   }
 
   // Prints the rest: by severity, then by rule, a few of each.
@@ -262,7 +263,7 @@ class TextReport {
         const Finding& finding = story_.report.findings[group[n]];
         if (n >= kLinesOfRule && group.size() > kLinesOfRule + 1) {
           const bool listed = !options_.verbose && group.size() <= options_.findings_max;
-          out_ += fmt::format("{}and {} more of {} ({})\n", kIndent, group.size() - n,
+          out_ += fmt::format("{}and {} more of {} ({})\n", text::kIndent, group.size() - n,
                               trace_id(finding.requirement),
                               listed ? "--verbose lists them" : "--max-findings N shows N in full");
           break;
@@ -313,20 +314,20 @@ class TextReport {
       ++(is_expected(i) ? expected : counts[severity]);
     }
     const Outcome& outcome = story_.outcome;
-    std::string text = counted(counts[Severity::kFail], "failure");
+    std::string text = text::counted(counts[Severity::kFail], "failure");
     if (!story_.expected.entries.empty()) {
-      text += fmt::format(", {} expected, {} not true", counted(expected, "known failure"),
-                          counted(outcome.broken_expectations, "expectation"));
+      text += fmt::format(", {} expected, {} not true", text::counted(expected, "known failure"),
+                          text::counted(outcome.broken_expectations, "expectation"));
     }
     for (const Severity severity :
          {Severity::kWeak, Severity::kStray, Severity::kInconclusive, Severity::kNote}) {
       if (counts[severity] == 0) continue;
       const bool note = severity == Severity::kNote;
-      text += ", " + (note ? counted(counts[severity], "note")
+      text += ", " + (note ? text::counted(counts[severity], "note")
                            : fmt::format("{} {}", counts[severity], severity_name(severity)));
     }
-    text += fmt::format("; {} judged, {} exercised", counted(story_.report.frames, "frame"),
-                        counted(story_.report.exercised.size(), "rule"));
+    text += fmt::format("; {} judged, {} exercised", text::counted(story_.report.frames, "frame"),
+                        text::counted(story_.report.exercised.size(), "rule"));
     std::string verdict(verdict_name(outcome.verdict));
     if (outcome.verdict == check::Verdict::kFail && outcome.as_expected()) {
       verdict += " as expected";

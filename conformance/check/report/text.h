@@ -18,7 +18,7 @@ struct Story {
   const Outcome& outcome;
 };
 
-struct TextOptions : TextStyle {
+struct TextOptions : text::TextStyle {
   bool verbose = false;  ///< Every finding in full, not only the first of a rule and node.
   std::size_t findings_max =
       20;  ///< So many of a rule and severity are in full; others are counted.

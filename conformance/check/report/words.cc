@@ -31,7 +31,7 @@ std::string place_text(const check::Run& run, const check::Place& place) {
   if (place.frame != 0 && run.files.size() > 1 && place.file < run.files.size()) {
     out += " of " + run.files[place.file];
   }
-  if (place.time_us >= 0) out += " at " + seconds_text(place.time_us) + " s";
+  if (place.time_us >= 0) out += " at " + text::seconds_text(place.time_us) + " s";
   return out;
 }
 

@@ -72,8 +72,8 @@ ReportFolder::~ReportFolder() {
 void ReportFolder::stage(const std::string& path, std::string_view text) const {
   const fs::path to = staged_ / path;
   make_folder(to.parent_path());
-  report::OutFile file(to.string(), report::OutFile::Mode::kGrow);
-  int error = report::write_all(file.fd(), text);
+  text::OutFile file(to.string(), text::OutFile::Mode::kGrow);
+  int error = text::write_all(file.fd(), text);
   if (error == 0) error = file.finish();
   if (error != 0) cannot_write(folder_ / path, error);
 }

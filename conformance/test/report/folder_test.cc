@@ -115,9 +115,9 @@ TEST(ReportFolder, KeepsTheOldReportUntilTheNewOneIsWhole) {
 }
 
 TEST(ReportFolder, SaysWhyAFileCannotBeWritten) {
-  EXPECT_EQ(report::write_file("/dev/full", "x"), ENOSPC);
-  EXPECT_EQ(report::write_file("/dev/null/x", "x"), ENOTDIR);
-  EXPECT_EQ(report::write_file("/dev/null", "x"), 0);
+  EXPECT_EQ(text::write_file("/dev/full", "x"), ENOSPC);
+  EXPECT_EQ(text::write_file("/dev/null/x", "x"), ENOTDIR);
+  EXPECT_EQ(text::write_file("/dev/null", "x"), 0);
 }
 
 }  // namespace

@@ -70,7 +70,7 @@ class Charts {
   Json index_of(report::Sequence sequence) {
     std::vector<report::SequenceRow>& rows = sequence.rows;
     if (rows.empty()) return nullptr;
-    std::string title = report::counted(rows.size(), "event");
+    std::string title = text::counted(rows.size(), "event");
     if (rows.size() > kRowsMax) {
       title = fmt::format("{} of {}", kRowsMax, title);
       const auto marked =

@@ -32,7 +32,7 @@ std::string yaml_text(std::string_view text) {
 }
 
 std::string comment(const std::string& text) {
-  std::string out = "\n" + report::wrapped("", text, kColumns - 2, 0);
+  std::string out = "\n" + text::wrapped("", text, kColumns - 2, 0);
   out.pop_back();
   for (std::size_t at = 0; (at = out.find('\n', at)) != std::string::npos; at += 3) {
     out.insert(at + 1, "# ");

@@ -16,7 +16,7 @@ using runner::CaseVerdict;
 std::string clean(std::string_view text) {
   std::string out;
   while (!text.empty()) {
-    const std::size_t length = report::utf8_length(text);
+    const std::size_t length = text::utf8_length(text);
     const auto first = static_cast<unsigned char>(text.front());
     if (length == 0 || first < 0x20 || first == 0x7F) {
       out += fmt::format("\\x{:02x}", first);

@@ -146,15 +146,15 @@ std::string outside_headline(const ImplementationRun& implementation) {
 
 std::string replay_command(const SuiteRun& run, const ImplementationRun& implementation,
                            const CaseRun& one) {
-  std::string out = "rubric test --target " + report::shell_word(implementation.target) +
-                    " --cases " + report::shell_word(one.name);
-  if (!run.app.empty()) out += " --app " + report::shell_word(run.app);
+  std::string out = "rubric test --target " + text::shell_word(implementation.target) +
+                    " --cases " + text::shell_word(one.name);
+  if (!run.app.empty()) out += " --app " + text::shell_word(run.app);
   for (const trace::Stated& stated : run.stated) {
     out += " --state " + trace::statement_text({stated});
   }
   if (run.profile != "paper") out += " --profile " + run.profile;
   if (one.seed != 0) out += fmt::format(" --seed {}", one.seed);
-  for (const std::string& path : run.traces) out += " " + report::shell_word(path);
+  for (const std::string& path : run.traces) out += " " + text::shell_word(path);
   return out;
 }
 

@@ -70,10 +70,10 @@ std::string incomplete(const SuiteRun& run, const ImplementationRun& implementat
   if (decided == 0) return "nothing was decided";
   if (owed > 0) {
     return fmt::format("{} {} neither decided nor listed with a reason",
-                       report::counted(owed, "case"), owed == 1 ? "is" : "are");
+                       text::counted(owed, "case"), owed == 1 ? "is" : "are");
   }
   if (rules_decided < run.rules_required) {
-    return fmt::format("{} decided, of {} required", report::counted(rules_decided, "rule"),
+    return fmt::format("{} decided, of {} required", text::counted(rules_decided, "rule"),
                        run.rules_required);
   }
   return {};

@@ -31,7 +31,7 @@ std::string harmless_but_firm(std::string_view text) {
   std::string out;
   for (std::size_t at = 0; at <= text.size();) {
     const std::size_t end = std::min(text.find(kFirmBlank, at), text.size());
-    out += report::harmless(text.substr(at, end - at), report::Keep::kLines);
+    out += text::harmless(text.substr(at, end - at), text::Keep::kLines);
     if (end < text.size()) out += kFirmBlank;
     at = end + 1;
   }
@@ -114,7 +114,7 @@ std::string Table::with_last_below(std::size_t columns, std::size_t indent) cons
 
 std::string wrapped(const std::string& text, std::size_t indent, std::size_t columns) {
   if (text.find_first_not_of(" \n") == std::string::npos) return {};
-  std::string out = report::broken_at_blanks(std::string(indent, ' '), text, columns, indent);
+  std::string out = text::broken_at_blanks(std::string(indent, ' '), text, columns, indent);
   std::replace(out.begin(), out.end(), kFirmBlank, ' ');
   return out;
 }

@@ -53,7 +53,7 @@ lines::SteadyTime LineNetwork::run() {
       if (now < next_try_) return next_try_;
       next_try_ = now + kTryEvery;
       stream_ = lines::connect_tcp(at_, now + kOpenTime);
-      report::print(stderr, "rubric: lines:{}:{}: connected\n", at_.host, at_.port);
+      text::print(stderr, "rubric: lines:{}:{}: connected\n", at_.host, at_.port);
       said_ = false;
       input_.clear();
     }
@@ -75,7 +75,7 @@ lines::SteadyTime LineNetwork::run() {
 
 void LineNetwork::lost(const char* why) {
   stream_.close();
-  if (!said_) report::print(stderr, "rubric: lines:{}:{}: {}\n", at_.host, at_.port, why);
+  if (!said_) text::print(stderr, "rubric: lines:{}:{}: {}\n", at_.host, at_.port, why);
   said_ = true;
   while (!devices_.empty()) leave(std::string(*devices_.begin()));
 }
@@ -113,8 +113,8 @@ void LineNetwork::take(std::string_view line) {
       return above_.read(words[1], nlohmann::json{{words[2], {{"value", value}}}}.dump());
     }
   }
-  report::print(stderr, "rubric: lines:{}:{}: refused '{}'\n", at_.host, at_.port,
-                std::string(line.substr(0, 80)));
+  text::print(stderr, "rubric: lines:{}:{}: refused '{}'\n", at_.host, at_.port,
+              std::string(line.substr(0, 80)));
 }
 
 void LineNetwork::write(const std::string& line) {

@@ -112,8 +112,8 @@ class Islands {
   void settle(const EcologyIsland& island, Plan& plan) {
     Inhabitant& sink = add(plan.sink(island), island.sink_app, nullptr);
     const std::uint16_t air = sink.station->air_port();
-    report::print(stderr, "rubric: island {}: zep:{}, {}\n", island.island, air,
-                  sink.station->serial_address());
+    text::print(stderr, "rubric: island {}: zep:{}, {}\n", island.island, air,
+                sink.station->serial_address());
     if (island.serial.empty()) {
       StationSetup setup = plan.base_station(island);
       setup.to = lines::required_address(sink.station->serial_address());
@@ -168,8 +168,8 @@ class Islands {
       lines::request_stop();
     }
     if (lines::stop_requested()) return;
-    report::print(stderr, "rubric: the application of {} has ended, so it has\n",
-                  station.setup().name);
+    text::print(stderr, "rubric: the application of {} has ended, so it has\n",
+                station.setup().name);
     if (++ended_ == inhabitants_.size()) lines::request_stop();
   }
 

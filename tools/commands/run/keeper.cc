@@ -31,9 +31,9 @@ void Keeper::open_log(const std::string& path, Mode mode,
   file.header(header);
   for (const trace::NodeHeader& node : nodes) file.node(node);
   file.cases.emplace_back("run");
-  log_ = std::make_unique<report::OutFile>(path, mode);
+  log_ = std::make_unique<text::OutFile>(path, mode);
   log_path_ = path;
-  log_error_ = report::write_all(log_->fd(), trace::print(file));
+  log_error_ = text::write_all(log_->fd(), trace::print(file));
 }
 
 void Keeper::frame(const Packet& packet, std::string_view interface_name) {
@@ -88,7 +88,7 @@ void Keeper::put(const trace::Line& line) {
   std::string text;
   trace::put_line(line, text);
   text += '\n';
-  if (log_error_ == 0) log_error_ = report::write_all(log_->fd(), text);
+  if (log_error_ == 0) log_error_ = text::write_all(log_->fd(), text);
 }
 
 bool Keeper::finish() {
@@ -102,7 +102,7 @@ bool Keeper::finish() {
     const int error = log_->finish();
     if (log_error_ == 0) log_error_ = error;
     if (log_error_ != 0) {
-      report::print(stderr, "rubric: {}: {}\n", log_path_, std::strerror(log_error_));
+      text::print(stderr, "rubric: {}: {}\n", log_path_, std::strerror(log_error_));
     }
   }
   return good && log_error_ == 0;

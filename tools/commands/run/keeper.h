@@ -20,7 +20,7 @@ namespace rubric::run {
 /// those of nodes that are late come in the order of their stamps.
 class Keeper {
  public:
-  using Mode = report::OutFile::Mode;
+  using Mode = text::OutFile::Mode;
 
   void open_capture(const std::string& path, Mode mode, const lines::Rotation& rotation);
   /// Opens the log of these nodes, and of what they state. Throws std::system_error.
@@ -50,7 +50,7 @@ class Keeper {
   std::mutex mutex_;
   std::optional<lines::CaptureFile> capture_;
   std::vector<Kept> waiting_;  // By time.
-  std::unique_ptr<report::OutFile> log_;
+  std::unique_ptr<text::OutFile> log_;
   std::string log_path_;
   int log_error_ = 0;
   std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();

@@ -41,7 +41,7 @@ void LineOutput::put(std::string_view line) {
   const std::lock_guard lock(mutex_);
   if (closed_) return;
   if (waiting_.size() + line.size() > kWaitingMax) {
-    if (lost_++ == 0) report::print(stderr, "rubric: {}: events are lost, nobody reads\n", name_);
+    if (lost_++ == 0) text::print(stderr, "rubric: {}: events are lost, nobody reads\n", name_);
     return;
   }
   waiting_ += line;
@@ -65,7 +65,7 @@ void LineOutput::finish(lines::SteadyTime deadline) {
   if (!closed_)
     lost_ += static_cast<std::size_t>(std::count(waiting_.begin(), waiting_.end(), '\n'));
   waiting_.clear();
-  if (lost_ != 0) report::print(stderr, "rubric: {}: {} events were lost\n", name_, lost_);
+  if (lost_ != 0) text::print(stderr, "rubric: {}: {} events were lost\n", name_, lost_);
   lost_ = 0;
 }
 

@@ -78,7 +78,7 @@ bool SerialEnd::open() {
     open_ = true;
     said_ = false;
     pause_ = kFirstPause;
-    report::print(stderr, "rubric: {}: connected\n", name_);
+    text::print(stderr, "rubric: {}: connected\n", name_);
   } catch (const Broken& broken) {
     if (!waits_for_others_) lost(broken.what());
     next_try_ = steady_clock::now() + (waits_for_others_ ? kFirstPause / 5 : pause_);
@@ -89,7 +89,7 @@ bool SerialEnd::open() {
 
 void SerialEnd::lost(const std::string& why) {
   open_ = false;
-  if (!said_) report::print(stderr, "rubric: {}: {}\n", name_, why);
+  if (!said_) text::print(stderr, "rubric: {}: {}\n", name_, why);
   said_ = true;
 }
 

@@ -102,7 +102,7 @@ void Station::open_radio() {
   };
   user.twin = [this] {
     if (!is_mote() || warned_) return;  // All sinks have the same id.
-    report::print(stderr, "rubric: another mote on this air has the id {}, too\n", setup_.id);
+    text::print(stderr, "rubric: another mote on this air has the id {}, too\n", setup_.id);
     warned_ = true;
   };
   radio_.emplace(VirtualRadio::Settings{setup_.id, setup_.loss, setup_.seed}, setup_.air,
@@ -232,8 +232,8 @@ void Station::hear_serial() {
 void Station::look_at_island() {
   const std::uint16_t island = layer_->island();
   if (!is_sink() || island == island_) return;
-  report::print(stderr, "rubric: the host at the serial line made this island {}, which was {}\n",
-                island, island_);
+  text::print(stderr, "rubric: the host at the serial line made this island {}, which was {}\n",
+              island, island_);
   island_ = island;
 }
 

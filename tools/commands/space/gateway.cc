@@ -66,11 +66,11 @@ void Gateway::take_availability(const Tuple& tuple) {
   const auto now = steady_clock::now();
   if (now - said_other_ < kSayOtherEvery) return;
   said_other_ = now;
-  report::print(stderr,
-                "rubric: space: another base station of island {} is there since {}{}; both take "
-                "its messages and wishes\n",
-                settings_.island, time_text(tuple.written_ms),
-                tuple.stays ? ", or was and is not missed yet" : "");
+  text::print(stderr,
+              "rubric: space: another base station of island {} is there since {}{}; both take "
+              "its messages and wishes\n",
+              settings_.island, time_text(tuple.written_ms),
+              tuple.stays ? ", or was and is not missed yet" : "");
 }
 
 void Gateway::happened(const machine::Notice& notice, run::Caller&) {
@@ -206,12 +206,12 @@ void Gateway::refuse(const std::string& key, const std::string& why) {
     return;
   }
   said_ = now;
-  report::print(stderr, "rubric: space: refused {}: {}\n", printable(key), printable(why));
+  text::print(stderr, "rubric: space: refused {}: {}\n", printable(key), printable(why));
 }
 
 void Gateway::say_rest() {
   if (unsaid_ == 0) return;
-  report::print(stderr, "rubric: space: refused {} more\n", std::exchange(unsaid_, 0));
+  text::print(stderr, "rubric: space: refused {} more\n", std::exchange(unsaid_, 0));
 }
 
 void Gateway::send(Bytes packet) {

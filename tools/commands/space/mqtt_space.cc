@@ -147,7 +147,7 @@ class MqttSpace::Client {
     } else if (connected_ || ++unsent_ <= kUnsentMax) {
       publish(root_ + key, payload, false);
     } else if (unsent_ == kUnsentMax + 1) {
-      report::print(stderr, "rubric: {}: not there; events are lost\n", name_);
+      text::print(stderr, "rubric: {}: not there; events are lost\n", name_);
     }
     return now_ms;
   }
@@ -225,7 +225,7 @@ class MqttSpace::Client {
     if (started_ || now < next_try_) return;
     const int result = mosquitto_connect_async(handle_, host_.c_str(), port_, kKeepAliveS);
     if (result == MOSQ_ERR_ERRNO) {
-      if (!said_) report::print(stderr, "rubric: {}: {}\n", name_, std::strerror(errno));
+      if (!said_) text::print(stderr, "rubric: {}: {}\n", name_, std::strerror(errno));
       said_ = true;
       next_try_ = now + pause_;
       pause_ = std::min(2 * pause_, std::chrono::seconds(kLongestPauseS));
@@ -258,11 +258,11 @@ class MqttSpace::Client {
   void connected(int code) {
     const std::lock_guard lock(mutex_);
     if (code != 0) {
-      if (!said_) report::print(stderr, "rubric: {}: {}\n", name_, mosquitto_connack_string(code));
+      if (!said_) text::print(stderr, "rubric: {}: {}\n", name_, mosquitto_connack_string(code));
       said_ = true;
       return;
     }
-    report::print(stderr, "rubric: {}: connected\n", name_);
+    text::print(stderr, "rubric: {}: connected\n", name_);
     connected_ = true;
     said_ = false;
     unsent_ = 0;
@@ -275,8 +275,8 @@ class MqttSpace::Client {
   void disconnected(int code) {
     const std::lock_guard lock(mutex_);
     if (code != 0 && !said_) {
-      report::print(stderr, "rubric: {}: {}\n", name_,
-                    connected_ ? "the connection is lost" : mosquitto_strerror(code));
+      text::print(stderr, "rubric: {}: {}\n", name_,
+                  connected_ ? "the connection is lost" : mosquitto_strerror(code));
     }
     said_ = said_ || code != 0;
     connected_ = false;

@@ -13,7 +13,7 @@
 namespace rubric::stats {
 namespace {
 
-using report::Json;
+using text::Json;
 
 using NamedFlow = std::pair<std::string, const Flow*>;
 
@@ -256,7 +256,7 @@ std::string text_report(const Counters& counters) {
     out += fmt::format("\nnoted {} times: {}", count, reflect::note_name(kind));
   }
   if (!counters.notes().empty()) out += '\n';
-  return report::harmless(out, report::Keep::kLines);
+  return text::harmless(out, text::Keep::kLines);
 }
 
 std::string json_report(const Counters& counters) {

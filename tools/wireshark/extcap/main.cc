@@ -274,7 +274,7 @@ cli::InputOptions input_of(const CaptureOptions& options) {
 }
 
 int usage(const std::string& what) {
-  report::print(stderr, "rubric-extcap: {}\n", what);
+  text::print(stderr, "rubric-extcap: {}\n", what);
   return cli::kExitUsage;
 }
 
@@ -367,7 +367,7 @@ int answer(const std::string& text) {
 }
 
 int complain(const std::string& what) {
-  report::print(stderr, "rubric-extcap: {}\nTry 'rubric-extcap --help'.\n", what);
+  text::print(stderr, "rubric-extcap: {}\nTry 'rubric-extcap --help'.\n", what);
   return cli::kExitUsage;
 }
 

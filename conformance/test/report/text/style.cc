@@ -44,7 +44,7 @@ std::string error_text(const std::string& text, const TextOptions& options) {
       "{}Its standard error{}:\n", kIndent,
       first > 0 ? fmt::format(", last {} of {} lines", kErrorLines, all) : std::string());
   for (std::size_t i = first; i < all; ++i) {
-    out += fmt::format("{}  | {}\n", kIndent, report::harmless(lines[i], report::Keep::kLines));
+    out += fmt::format("{}  | {}\n", kIndent, text::harmless(lines[i], text::Keep::kLines));
   }
   return out;
 }

@@ -9,11 +9,11 @@
 
 namespace rubric::suite {
 
-using report::field;
-using report::in_capitals;
-using report::kIndent;
-using report::painted;
-using report::styled;
+using text::field;
+using text::in_capitals;
+using text::kIndent;
+using text::painted;
+using text::styled;
 
 std::string_view style_of(runner::CaseVerdict verdict, bool unexpected);
 /// The last lines of what an implementation wrote to its standard error, each behind a bar.

@@ -16,9 +16,9 @@
 namespace rubric::suite {
 namespace {
 
-using report::counted;
-using report::wrapped;
 using runner::CaseVerdict;
+using text::counted;
+using text::wrapped;
 
 std::string roles_text(const std::vector<machine::Role>& roles) {
   std::string out;

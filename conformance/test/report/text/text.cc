@@ -25,10 +25,10 @@
 namespace rubric::suite {
 namespace {
 
-using report::counted;
-using report::wrapped;
 using runner::CaseVerdict;
 using runner::Failure;
+using text::counted;
+using text::wrapped;
 using trace::Line;
 using trace::Op;
 
@@ -93,12 +93,11 @@ std::string log_around(const CaseRun& one, const runner::Failure& failure, std::
     const std::string head = std::string(indent, ' ') + (row.marked ? "> " : "  ");
     if (!row.line) {
       const std::optional<Line> asked = asked_line(failure);
-      out +=
-          report::wrapped(head + fmt::format("{:<9} ", window_text(failure)),
-                          failure.forbidden || !asked
-                              ? "here"
-                              : fmt::format("no {} that is as the line says", asked->message.name),
-                          width);
+      out += text::wrapped(head + fmt::format("{:<9} ", window_text(failure)),
+                           failure.forbidden || !asked
+                               ? "here"
+                               : fmt::format("no {} that is as the line says", asked->message.name),
+                           width);
       continue;
     }
     Line line = *row.line;
@@ -107,10 +106,10 @@ std::string log_around(const CaseRun& one, const runner::Failure& failure, std::
     const std::string am = line.am ? fmt::format("am={}->{} ", trace::value_text(line.am->source),
                                                  trace::value_text(line.am->dest))
                                    : std::string();
-    out += report::wrapped(head + fmt::format("{:<9} ", fmt::format("@{}", line.time.from)),
-                           fmt::format("{} {} {} {}{}", line.node, trace::op_text(line.op),
-                                       line.link, am, trace::print(with_short_paths(line.message))),
-                           width);
+    out += text::wrapped(head + fmt::format("{:<9} ", fmt::format("@{}", line.time.from)),
+                         fmt::format("{} {} {} {}{}", line.node, trace::op_text(line.op), line.link,
+                                     am, trace::print(with_short_paths(line.message))),
+                         width);
   }
   return out;
 }
@@ -339,9 +338,9 @@ std::string case_text(const CaseRun& one, const TextOptions& options) {
   } else if (one.expectation == Expectation::kUnexpectedPass) {
     rest = "was expected to fail";
   } else if (one.result.verdict != CaseVerdict::kPass) {
-    rest = report::harmless(headline(one));
+    rest = text::harmless(headline(one));
   }
-  const std::string name = report::harmless(case_name(one));
+  const std::string name = text::harmless(case_name(one));
   std::string out = fmt::format("{:<12} {}", verdict, name);
   if (!rest.empty()) {
     out = fmt::format("{:<12} {:<{}} {}", verdict, name, kNameColumns, rest);
