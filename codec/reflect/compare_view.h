@@ -19,7 +19,7 @@ class ViewComparer {
   /// in place of its bytes, or 0 if they left them opaque.
   template <class View>
   std::size_t structure(const View& view, std::size_t node) {
-    const Place before = place_;
+    const Children before = place_;
     place_ = {node + 1, decoded_[node].end, 0};
     same("kind", static_cast<int>(NodeKind::kStruct), static_cast<int>(decoded_[node].kind));
     extent("structure", view.bytes(), decoded_[node]);
@@ -57,7 +57,7 @@ class ViewComparer {
   long elements() const { return elements_; }  ///< Compared, of arrays of either kind.
 
  private:
-  struct Place {
+  struct Children {
     std::size_t next = 0;
     std::size_t end = 0;
     std::size_t chosen = 0;
@@ -132,7 +132,7 @@ class ViewComparer {
   }
 
   const Decoded& decoded_;
-  Place place_;
+  Children place_;
   std::string difference_;
   long numbers_ = 0;
   long elements_ = 0;

@@ -145,12 +145,12 @@ class Decoder {
   Decoder(Decoded& out, const Switch* more) : out_(out), more_(more) {}
 
   void run(const Type& type, Tail tail, bool is_message) {
-    whole(type, tail, is_message);
+    outermost(type, tail, is_message);
     out_.node_count_ = count_;
   }
 
  private:
-  void whole(const Type& type, Tail tail, bool is_message) {
+  void outermost(const Type& type, Tail tail, bool is_message) {
     // A node is a structure or takes at least a byte, and structures nest less than kMaxPath deep.
     const std::size_t need = 2 * out_.bytes.size() + 64 * Decoded::kMaxPath;
     if (out_.capacity_ < need) {

@@ -16,7 +16,7 @@ class Slips {
  public:
   Slips(std::string text, unsigned seed) : text_(std::move(text)), random_(seed) {}
 
-  void one() {
+  void slip() {
     switch (below(6)) {
       case 0: return double_line();
       case 1: return drop_line();
@@ -135,7 +135,7 @@ std::size_t mutate_lines(std::uint8_t* data, std::size_t size, std::size_t max_s
   if (random() % 3 == 0) return mutate_bytes(data, size, max_size, seed);
   Slips slips(std::string(reinterpret_cast<const char*>(data), size),
               static_cast<unsigned>(random()));
-  for (auto left = 1 + random() % 3; left > 0; --left) slips.one();
+  for (auto left = 1 + random() % 3; left > 0; --left) slips.slip();
   const std::size_t kept = std::min(slips.text().size(), max_size);
   if (kept > 0) std::memcpy(data, slips.text().data(), kept);
   return kept;

@@ -71,13 +71,14 @@ std::string_view Diagnostics::source_from(const std::string& file, int line) con
   return std::string_view(source.text).substr(source.lines[index]);
 }
 
-void Diagnostics::error(const Place& place, std::string what, std::string_view expected) {
+void Diagnostics::error(const SourcePlace& place, std::string what, std::string_view expected) {
   if (!expected.empty()) what.append("; ").append(expected);
   found_.try_emplace(Key{place.file, place.line, place.column, what},
                      Diagnostic{place, what, false});
 }
 
-void Diagnostics::error_in_code(const Place& place, std::string what, std::string_view expected) {
+void Diagnostics::error_in_code(const SourcePlace& place, std::string what,
+                                std::string_view expected) {
   if (!expected.empty()) what.append("; ").append(expected);
   found_.try_emplace(Key{place.file, place.line, place.column, what},
                      Diagnostic{place, what, true});
@@ -93,7 +94,7 @@ std::vector<Diagnostic> Diagnostics::sorted() const {
   return out;
 }
 
-void Diagnostics::note(const Place& place, std::string what) {
+void Diagnostics::note(const SourcePlace& place, std::string what) {
   notes_.try_emplace(Key{place.file, place.line, place.column, what},
                      Diagnostic{place, what, false});
 }
@@ -110,7 +111,7 @@ std::string Diagnostics::print(const std::map<Key, Diagnostic>& list, std::strin
       break;
     }
     ++shown;
-    const Place& place = found.place;
+    const SourcePlace& place = found.place;
     if (place.line == 0) {
       out += fmt::format("{}: {}: {}\n", place.file, kind, found.text);
       continue;

@@ -14,7 +14,7 @@
 namespace rubricc {
 
 struct Diagnostic {
-  Place place;
+  SourcePlace place;
   std::string text;  // "what is wrong; what was expected"
   bool in_code = false;
 };
@@ -28,15 +28,15 @@ class Diagnostics {
 
   /// Adds an error; `expected` may be empty. The same error at the same place is kept once: an
   /// aliased YAML node is read as often as it is used.
-  void error(const Place& place, std::string what, std::string_view expected = {});
+  void error(const SourcePlace& place, std::string what, std::string_view expected = {});
 
   /// The same for what generated code cannot have, but tables in memory can.
-  void error_in_code(const Place& place, std::string what, std::string_view expected = {});
+  void error_in_code(const SourcePlace& place, std::string what, std::string_view expected = {});
   /// Forgets the errors of error_in_code.
   void pardon_code();
 
   /// Keeps something that is accepted, but worth to be known.
-  void note(const Place& place, std::string what);
+  void note(const SourcePlace& place, std::string what);
   /// Returns the notes as print() does errors.
   std::string print_notes() const;
 

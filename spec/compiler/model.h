@@ -14,7 +14,7 @@
 namespace rubricc {
 
 /// A place in a spec file; line and column count from 1, 0 is unknown.
-struct Place {
+struct SourcePlace {
   std::string file;
   int line = 0;
   int column = 0;
@@ -26,7 +26,7 @@ struct Field;
 struct Spec;
 
 /// Places of the values of keys, for diagnostics.
-using KeyPlaces = std::map<std::string, Place, std::less<>>;
+using KeyPlaces = std::map<std::string, SourcePlace, std::less<>>;
 
 /// Least and greatest value that an expression or field can have, both included.
 struct Interval {
@@ -55,7 +55,7 @@ enum class ExprOp {
 };
 struct Expr {
   ExprOp op = ExprOp::kInt;
-  Place place;
+  SourcePlace place;
   std::int64_t value = 0;         // kInt; kEnumValue once resolved.
   std::vector<std::string> path;  // kField: {"src", "devid"}; kEnumValue: {"pid", "local"}.
   bool to_i = false;              // `.to_i`: an enum's number.
@@ -75,7 +75,7 @@ enum class ExtentKind { kOwn, kSize, kToEnd, kTerminated };
 enum class Encoding { kNone, kAscii, kUtf8 };
 
 struct Valid {
-  Place place;
+  SourcePlace place;
   // Any of these may be absent. `contents` and eq become one_of with one value.
   std::optional<std::int64_t> min;
   std::optional<std::int64_t> max;
@@ -88,7 +88,7 @@ struct Valid {
 };
 
 struct SwitchCase {
-  Place place;
+  SourcePlace place;
   ExprPtr key_expr;                    // Null for `_`.
   std::optional<std::int64_t> number;  // The key, unless that had a mistake.
   std::int64_t key = 0;                // The same, for emitters.
@@ -96,7 +96,7 @@ struct SwitchCase {
   const Type* type = nullptr;  // Resolved.
 };
 struct Switch {
-  Place place;
+  SourcePlace place;
   ExprPtr key;
   std::vector<SwitchCase> cases;        // Without `_`; ascending by key after the check.
   std::optional<SwitchCase> otherwise;  // `_`.
@@ -119,7 +119,7 @@ struct Text {
 struct Field {
   std::string id;
   std::string name;  // `-name`, else id.
-  Place place;
+  SourcePlace place;
   KeyPlaces places;
   bool refused_keys = false;  // Then what is missing may be among them.
   std::string doc;
@@ -166,7 +166,7 @@ struct Type {
   std::string id;
   std::string name;  // `-name`, else id.
   const Spec* spec = nullptr;
-  Place place;
+  SourcePlace place;
   KeyPlaces places;
   bool refused_keys = false;  // Then what is missing may be among them.
   std::string doc;
@@ -191,12 +191,12 @@ struct EnumEntry {
   std::int64_t value = 0;
   std::string name;
   std::string doc;
-  Place place;
+  SourcePlace place;
 };
 struct Enum {
   std::string id;
   const Spec* spec = nullptr;
-  Place place;
+  SourcePlace place;
   std::vector<EnumEntry> entries;  // Ascending by value after the check.
 };
 
@@ -214,7 +214,7 @@ struct Spec {
   KeyPlaces places;
   bool named = false;  // On the command line; else only imported, not emitted.
   std::vector<std::string> import_names;
-  std::vector<Place> import_places;
+  std::vector<SourcePlace> import_places;
   std::vector<const Spec*> imports;
   std::vector<std::unique_ptr<Type>> types;   // In file order, the root first.
   std::vector<const Type*> dependency_order;  // The same, what a type contains before it.
@@ -233,7 +233,7 @@ struct Requirement {
   std::vector<std::string> shows;    // What a break looks like: words that are all seen.
   std::vector<std::string> differs;  // The wrong parts of a message that came.
   bool content = false;              // No missing message breaks it.
-  Place place;
+  SourcePlace place;
 };
 
 struct AcceptedDifference {

@@ -131,7 +131,7 @@ bool is_snake_case(std::string_view id) {
 
 }  // namespace
 
-void check_id(Diagnostics& diagnostics, const Place& place, std::string_view id,
+void check_id(Diagnostics& diagnostics, const SourcePlace& place, std::string_view id,
               std::string_view what) {
   if (!is_snake_case(id)) {
     diagnostics.error(place, fmt::format("name {}", quote(id)), "lower snake case was expected");

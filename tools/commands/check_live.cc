@@ -93,7 +93,7 @@ class Session {
       cli::InputThreads input(options_.input);
       while (input.take(steady_clock::now() + kTick, [this](auto&&... it) { take(it...); })) {
         if (fresh_ && steady_clock::now() >= judge_next_) judge();
-        tell();
+        report_news();
         if (!news_.open()) lines::request_stop();
       }
       failed = input.failed();
@@ -141,7 +141,7 @@ class Session {
         after + std::max<steady_clock::duration>(kJudgeEvery, kJudgeShare * (after - before));
   }
 
-  void tell() {
+  void report_news() {
     if (!judged_once_) return;
     if (refused_.empty()) {
       refused_us_ = 0;
@@ -152,7 +152,7 @@ class Session {
       refused_told_ = true;
     }
     for (const check::Change& change : watch_.update(follow_.report(), now_us())) {
-      news_.tell(follow_.run(), judged_, change, expected_);
+      news_.report(follow_.run(), judged_, change, expected_);
     }
     news_.flush();
   }

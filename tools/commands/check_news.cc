@@ -120,8 +120,8 @@ void CheckNews::begin() const {
   text::print(stderr, "rubric check: findings as they come; Ctrl-C ends with the report\n");
 }
 
-void CheckNews::tell(const check::Run& run, const check::Options& judged, const Change& change,
-                     const report::KnownFailures& expected) {
+void CheckNews::report(const check::Run& run, const check::Options& judged, const Change& change,
+                       const report::KnownFailures& expected) {
   if (change.finding.severity == check::Severity::kNote && !options_.verbose &&
       options_.format != "jsonl") {
     return;

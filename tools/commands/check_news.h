@@ -31,8 +31,8 @@ class CheckNews {
   /// Prints, at a terminal, that a wait begins.
   void begin() const;
   /// Throws std::system_error if a file cannot be opened, as report() does.
-  void tell(const check::Run& run, const check::Options& judged, const check::Change& change,
-            const report::KnownFailures& expected);
+  void report(const check::Run& run, const check::Options& judged, const check::Change& change,
+              const report::KnownFailures& expected);
   /// What was told can be read then.
   void flush() {
     if (output_) output_->flush();

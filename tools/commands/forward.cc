@@ -24,7 +24,7 @@ struct ForwardOptions {
   std::uint32_t patience_s = 10;
   std::uint32_t ack_wait_ms = 1000;
   int retries = 24;  ///< TinyOS's Java host has the same.
-  forward::Options server;
+  forward::ServerOptions server;
   cli::WriteOptions write;
   cli::InputOptions input;  ///< Its --spec alone.
   std::string filter;

@@ -209,7 +209,7 @@ class Run {
     if (!options_.expect.empty()) expect = std::make_unique<CountedOutput>(options_.expect);
     begin(out);
     for (std::uint64_t i = 0; i < options_.count && out.open(); ++i) {
-      const std::string line = one(i, out);
+      const std::string line = write_frame(i, out);
       if (expect) expect->append(line + "\n");
     }
     text_.clear();
@@ -281,7 +281,7 @@ class Run {
   }
 
   /// Writes a frame; returns its expectation.
-  std::string one(std::uint64_t index, CountedOutput& out) {
+  std::string write_frame(std::uint64_t index, CountedOutput& out) {
     Framed framed = make(index);
     const std::uint64_t number = index + 1;
     if (!writer_) {

@@ -136,7 +136,7 @@ class Send {
       return !lines::stop_requested();
     };
     const auto send = [this](EncodedLines& lines, const OwnedPacket& packet,
-                             const std::string& place) { return one(lines, packet, place); };
+                             const std::string& place) { return send_line(lines, packet, place); };
     EncodedLines lines(options_.lines, encoder_, send, wait_for_line);
     return lines.all();
   }
@@ -161,7 +161,7 @@ class Send {
   }
 
   // Sends one packet. Returns whether to go on.
-  bool one(EncodedLines& lines, const OwnedPacket& owned, const std::string& place) {
+  bool send_line(EncodedLines& lines, const OwnedPacket& owned, const std::string& place) {
     const Packet packet = owned.view();
     const std::string why = refusal(packet);
     if (!why.empty()) {

@@ -163,7 +163,7 @@ class FilterParser {
     token_ = lexer_.next();
   }
 
-  std::size_t whole() {
+  std::size_t parse() {
     const std::size_t term = any(0);
     if (token_.kind == TokenKind::kEnd) return term;
     if (is_symbol(token_, ")")) fail("there is no '(' for this ')'");
@@ -379,7 +379,7 @@ class FilterParser {
 };
 
 Filter::Filter(std::string_view expression, const reflect::Protocol& protocol) {
-  root_ = FilterParser(expression, protocol, *this).whole();
+  root_ = FilterParser(expression, protocol, *this).parse();
 }
 
 }  // namespace rubric::format

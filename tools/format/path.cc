@@ -141,7 +141,7 @@ Value of_number(const Field& field, std::int64_t raw) {
 }  // namespace
 
 // Passes on a target's form of the field's raw number.
-bool Path::give(const Target& target, std::int64_t raw, Visitor visit) {
+bool Path::show(const Target& target, std::int64_t raw, Visitor visit) {
   Value value = of_number(*target.field, raw);
   switch (target.beside) {
     case Beside::kNothing: break;
@@ -159,14 +159,14 @@ bool Path::give(const Target& target, std::int64_t raw, Visitor visit) {
   return visit(value);
 }
 
-bool Path::give_node(const Target& target, const Decoded& decoded, std::size_t index,
+bool Path::show_node(const Target& target, const Decoded& decoded, std::size_t index,
                      Visitor visit) {
   const Node& node = decoded[index];
-  if (node.kind == NodeKind::kNumber) return give(target, node.value, visit);
+  if (node.kind == NodeKind::kNumber) return show(target, node.value, visit);
   if (node.kind == NodeKind::kNumberArray) {
     const std::uint8_t* at = decoded.bytes.data() + node.offset;
     for (std::uint32_t k = 0; k < node.count; ++k, at += node.field->width_bytes) {
-      if (!give(target, reflect::load_number(*node.field, at), visit)) return false;
+      if (!show(target, reflect::load_number(*node.field, at), visit)) return false;
     }
     return true;
   }
@@ -200,7 +200,7 @@ void Path::find(const Record& record, bool first_only, Visitor visit) const {
     if (here && (!first_only || !found || here == found) &&
         encloses(decoded, around, components_)) {
       found = here;
-      if (!give_node(*here, decoded, i, visit)) return;
+      if (!show_node(*here, decoded, i, visit)) return;
     }
     const bool structure = node.kind == NodeKind::kStruct || node.kind == NodeKind::kStructArray;
     if (structure && around.depth < kMaxPathDepth) around.nodes[around.depth++] = i;

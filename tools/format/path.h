@@ -57,8 +57,8 @@ class Path {
 
   void add_targets(const reflect::Field& field, std::string_view name, bool list);
   const Target* target(const reflect::Node& node) const;
-  static bool give(const Target& target, std::int64_t raw, Visitor visit);
-  static bool give_node(const Target& target, const reflect::Decoded& decoded, std::size_t index,
+  static bool show(const Target& target, std::int64_t raw, Visitor visit);
+  static bool show_node(const Target& target, const reflect::Decoded& decoded, std::size_t index,
                         Visitor visit);
   void find(const Record& record, bool first_only, Visitor visit) const;
 

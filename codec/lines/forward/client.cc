@@ -76,13 +76,13 @@ void Client::read(lines::SteadyTime now) {
     const std::size_t packets = packets_waiting();
     in_used_ += static_cast<std::size_t>(count);
     heard_ = now;
-    look();
+    check_input();
     if (begins || greeted != greeted_ || packets != packets_waiting()) begun_ = now;
   }
 }
 
 // Checks the beginning of its input.
-void Client::look() {
+void Client::check_input() {
   if (in_used_ == 0 || !fault_.empty()) return;
   if (!greeted_) {
     const bool magic = in_[0] == kSfMagic;
@@ -109,7 +109,7 @@ void Client::look() {
 void Client::drop(std::size_t count) {
   in_used_ -= count;
   std::memmove(in_.data(), in_.data() + count, in_used_);
-  look();
+  check_input();
   look_behind_the_last();
 }
 

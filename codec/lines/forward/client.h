@@ -66,7 +66,7 @@ class Client {
 
   void read(lines::SteadyTime now);
   void drop(std::size_t count);
-  void look();
+  void check_input();
   void look_behind_the_last();
   bool is_cut_short() const { return in_used_ > 0 && !packet(); }
 

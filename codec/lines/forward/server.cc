@@ -54,7 +54,7 @@ std::size_t clients_possible(std::size_t wanted) {
 
 }  // namespace
 
-Server::Server(const Options& options)
+Server::Server(const ServerOptions& options)
     : options_(options),
       listener_(listen_at(options.bind, options.port)),
       here_(address_here(listener_.get())),
@@ -172,7 +172,7 @@ void Server::give_packets(Time now) {
       ++counts_.not_sent;
     } else {
       try {
-        source_.give(*packet, now);
+        source_.send(*packet, now);
       } catch (const lines::Broken& broken) {
         lose_source(broken.what(), now);
       }

@@ -19,7 +19,7 @@
 namespace rubric::forward {
 
 /// The source, the clients, and the delay that one client may cause.
-struct Options {
+struct ServerOptions {
   Source::Options source;
   std::string bind = "127.0.0.1";
   std::uint16_t port = 9002;                ///< 0: a free one.
@@ -51,7 +51,7 @@ struct Counts {
 class Server {
  public:
   /// Listens from now on. Throws lines::Broken if that fails.
-  explicit Server(const Options& options);
+  explicit Server(const ServerOptions& options);
 
   /// Runs until asked to stop, or until the source is gone and is not to be opened again. Prints on
   /// stdout where it listens, once the source is open, and events on stderr. Returns false if the
@@ -89,7 +89,7 @@ class Server {
   /// Fills polled_: the listener, the source, the clients.
   void wait(std::optional<Time> until);
 
-  Options options_;
+  ServerOptions options_;
   Counts counts_;
   std::optional<lines::CaptureFile> capture_;
   bool capture_failed_ = false;

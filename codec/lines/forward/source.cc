@@ -155,7 +155,7 @@ void Source::heard(const Packet& packet) {
   if (is_forwarder() || lines::brings_packet(packet)) handlers_.on_packet(packet.bytes);
 }
 
-void Source::give(Bytes packet, lines::SteadyTime now) {
+void Source::send(Bytes packet, lines::SteadyTime now) {
   given_.assign(packet.begin(), packet.end());
   begin_given(now);
 }

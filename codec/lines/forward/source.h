@@ -59,7 +59,7 @@ class Source {
 
   /// Returns whether give() may be called.
   bool takes() const { return is_up() && given_.empty(); }
-  void give(Bytes packet, lines::SteadyTime now);
+  void send(Bytes packet, lines::SteadyTime now);
   /// Returns whether it has a packet of a client that was not given yet.
   bool is_giving() const { return !given_.empty(); }
 

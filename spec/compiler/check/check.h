@@ -25,12 +25,12 @@ struct Check {
   std::set<const void*> open;     // Fields and types whose size is not known.
   std::vector<Type*> order = {};  // All types, what a type contains before it.
 
-  void error(const Place& place, std::string what, std::string_view expected = {}) {
+  void error(const SourcePlace& place, std::string what, std::string_view expected = {}) {
     diagnostics.error(place, std::move(what), expected);
   }
   /// Reports what cannot be shown to be right: for tables in memory a note, as reading them checks
   /// it. Returns whether that is the case.
-  bool unproved(const Place& place, std::string what, std::string_view expected) {
+  bool unproved(const SourcePlace& place, std::string what, std::string_view expected) {
     if (at_run_time) {
       diagnostics.note(place, std::move(what) + "; each frame is checked");
     } else {
@@ -39,7 +39,7 @@ struct Check {
     return at_run_time;
   }
   /// Reports what tables in memory can hold, and nothing else.
-  void error_elsewhere(const Place& place, std::string what, std::string_view expected = {}) {
+  void error_elsewhere(const SourcePlace& place, std::string what, std::string_view expected = {}) {
     if (!at_run_time) error(place, std::move(what), expected);
   }
   bool is_open(const void* thing) const { return open.contains(thing); }

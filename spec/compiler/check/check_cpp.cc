@@ -38,7 +38,7 @@ class ScopeNames {
  public:
   ScopeNames(Check& check, std::string where) : check_(check), where_(std::move(where)) {}
 
-  void claim(const std::string& name, const Place& place) {
+  void claim(const std::string& name, const SourcePlace& place) {
     const auto [found, fresh] = lines_.try_emplace(name, place.line);
     if (fresh) return;
     check_.error(place, fmt::format("{} twice in the generated code of {}", quote(name), where_),
@@ -53,7 +53,7 @@ class ScopeNames {
 
 void check_classes(Check& check, const Spec& spec) {
   ScopeNames names(check, quote(spec.id));
-  const auto claim = [&](const std::string& name, const Place& place) {
+  const auto claim = [&](const std::string& name, const SourcePlace& place) {
     names.claim(name, place);
     if (!std::binary_search(kClasses.begin(), kClasses.end(), name)) return;
     check.error(place, fmt::format("{} hides a class of the runtime", quote(name)),
@@ -90,7 +90,7 @@ class Structure {
   }
 
  private:
-  void error(const Place& place, std::string what, std::string_view expected) {
+  void error(const SourcePlace& place, std::string what, std::string_view expected) {
     check_.error(place, std::move(what), expected);
     ok_ = false;
   }
@@ -123,7 +123,7 @@ class Structure {
     const cpp::Layout layout = cpp::lay_out(type_);
     ScopeNames view(check_, quote(type_.id)), builder(check_, quote(type_.id));
     for (const auto& field : type_.fields) {
-      const Place& place = field->place;
+      const SourcePlace& place = field->place;
       const bool structure = field->kind == ValueKind::kStruct && !field->choice;
       view.claim(field->id, place);
       view.claim(pascal(field->id) + "At", place);
@@ -137,7 +137,7 @@ class Structure {
       }
     }
     for (const cpp::Group& group : layout.groups) {
-      const Place& place = group.fields.front()->place;
+      const SourcePlace& place = group.fields.front()->place;
       view.claim(group.name + "_kind", place);
       view.claim(pascal(group.name) + "Kind", place);
       for (const Type* one : group.types) {

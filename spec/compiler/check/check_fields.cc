@@ -22,7 +22,7 @@ void check_bytes(Check& check, Field& field) {
 /// Text and bits are read at run time alone.
 void check_plain(Check& check, const Field& field) {
   if (check.at_run_time) return;
-  const Place& place = place_of(field.places, "type", field.place);
+  const SourcePlace& place = place_of(field.places, "type", field.place);
   if (field.text) {
     check.error(place, fmt::format("text or a terminator in {}", quote(field.id)),
                 "bytes were expected; rubric --spec reads text");
@@ -59,7 +59,7 @@ void check_extent(Check& check, Field& field) {
 
 void check_repeat(Check& check, Field& field) {
   if (field.repeat == RepeatKind::kOnce) return;
-  const Place& place = place_of(field.places, "repeat", field.place);
+  const SourcePlace& place = place_of(field.places, "repeat", field.place);
   if (field.kind == ValueKind::kBytes || field.extent != ExtentKind::kOwn) {
     check.error(place, "repeat of bytes", "numbers, masks or structures can repeat");
     check.open.insert(&field);

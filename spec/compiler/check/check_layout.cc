@@ -218,7 +218,7 @@ class Layout {
   void check_declared() {
     if (!type_.declared_size) return;
     const std::int64_t declared = *type_.declared_size;
-    const Place& place = place_of(type_.places, "-size", type_.place);
+    const SourcePlace& place = place_of(type_.places, "-size", type_.place);
     if (type_.max_size != kUnbounded) {
       if (declared == type_.max_size) return;
       check_.error(
@@ -274,7 +274,7 @@ class Order {
     }
   }
 
-  void visit_used(const Type& used, const Field& field, const Place& place, int depth) {
+  void visit_used(const Type& used, const Field& field, const SourcePlace& place, int depth) {
     if (marks_[&used] == Mark::kOpen) {
       check_.error(place, fmt::format("type {} contains itself", quote(used.id)),
                    "types must not form a circle");

@@ -18,7 +18,7 @@ class DistinctNames {
  public:
   DistinctNames(Check& check, std::string what) : check_(check), what_(std::move(what)) {}
 
-  void add(const std::string& name, const Place& place) {
+  void add(const std::string& name, const SourcePlace& place) {
     const auto [found, fresh] = seen_.try_emplace(pascal(name), std::pair(name, place.line));
     if (fresh) return;
     const auto& [other, line] = found->second;
@@ -57,7 +57,7 @@ struct Lookup {
   const Spec* spec;
   std::string name;
 };
-Lookup split(Check& check, const Spec& spec, const std::string& name, const Place& place) {
+Lookup split(Check& check, const Spec& spec, const std::string& name, const SourcePlace& place) {
   const std::size_t colons = name.find("::");
   if (colons == name.npos) return {&spec, name};
   const std::string id = name.substr(0, colons);
@@ -76,7 +76,8 @@ Lookup split(Check& check, const Spec& spec, const std::string& name, const Plac
   return {import, name.substr(colons + 2)};
 }
 
-const Type* find_type(Check& check, const Spec& spec, const std::string& name, const Place& place) {
+const Type* find_type(Check& check, const Spec& spec, const std::string& name,
+                      const SourcePlace& place) {
   const auto [where, id] = split(check, spec, name, place);
   if (where == nullptr) return nullptr;
   if (const Type* type = find_type(*where, id)) return type;
@@ -115,7 +116,7 @@ void resolve_field(Check& check, const Spec& spec, Field& field) {
     if (field.choice->otherwise) resolve_case(check, spec, field, *field.choice->otherwise);
   }
   if (!field.enum_name.empty()) {
-    const Place& place = place_of(field.places, "enum", field.place);
+    const SourcePlace& place = place_of(field.places, "enum", field.place);
     const auto [where, id] = split(check, spec, field.enum_name, place);
     if (where == nullptr) return;
     field.enumeration = find_enum(*where, id);

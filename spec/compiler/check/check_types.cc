@@ -34,7 +34,7 @@ class Requirements {
 
  private:
   /// Drops the name of an unknown rule where it is no error: its number may be another rule's.
-  void known(std::string& id, const Place& place) {
+  void known(std::string& id, const SourcePlace& place) {
     if (id.empty()) return;
     if (ids_.empty() || std::binary_search(ids_.begin(), ids_.end(), id)) return;
     if (!check_.for_code) return id.clear();
@@ -137,7 +137,7 @@ void check_types(Check& check) {
       check_am_types(check, *type);
       const bool radio = type->carrier == "radio_i" || type->carrier == "radio_t";
       if (radio && !type->fields.empty() && !check.is_open(type.get())) check_radio(check, *type);
-      const Place& place = place_of(type->places, "-carrier", type->place);
+      const SourcePlace& place = place_of(type->places, "-carrier", type->place);
       if (std::find(kCarriers.begin(), kCarriers.end(), type->carrier) == kCarriers.end()) {
         check.error(place, fmt::format("unknown carrier {}", quote(type->carrier)),
                     suggestion(type->carrier, kCarriers));

@@ -9,8 +9,8 @@ namespace {
 
 constexpr std::size_t kOneOfMax = 255;  // reflect::Valid::one_of_count is a byte.
 
-bool fits(Check& check, const Field& field, const Place& place, std::int64_t value, Interval range,
-          std::string_view what) {
+bool fits(Check& check, const Field& field, const SourcePlace& place, std::int64_t value,
+          Interval range, std::string_view what) {
   if (value >= range.min && value <= range.max) return true;
   check.error(place, fmt::format("{} {} is beyond {}", what, value, quote(field.id)),
               fmt::format("{} to {} was expected", range.min, range.max));

@@ -45,9 +45,9 @@ bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; 
 /// Returns the place of the character `offset` of a YAML scalar. A scalar of several lines has lost
 /// its line ends and indents: its words are looked up in the `source`, which begins with the line
 /// of `begin`. If it is not written as it reads (escapes), that leads to `begin`.
-Place place_in_scalar(const Place& begin, std::string_view text, std::size_t offset,
-                      std::string_view source) {
-  Place at = begin;
+SourcePlace place_in_scalar(const SourcePlace& begin, std::string_view text, std::size_t offset,
+                            std::string_view source) {
+  SourcePlace at = begin;
   auto i = static_cast<std::size_t>(begin.column - 1);
   const auto go_on = [&] {
     ++at.column;
@@ -59,7 +59,7 @@ Place place_in_scalar(const Place& begin, std::string_view text, std::size_t off
     const int header = at.line;
     while (i < source.size() && at.line == header) go_on();
   }
-  Place last = at;
+  SourcePlace last = at;
   for (std::size_t k = 0; k < text.size() && k <= offset; ++k) {
     if (is_blank(text[k])) continue;
     while (i < source.size() && is_blank(source[i])) go_on();
@@ -75,12 +75,12 @@ struct Fault {};  // Thrown within the parser after the diagnostic, caught in pa
 
 class Parser {
  public:
-  Parser(std::string_view text, const Place& place, Diagnostics& diagnostics)
+  Parser(std::string_view text, const SourcePlace& place, Diagnostics& diagnostics)
       : text_(text), place_(place), diagnostics_(diagnostics) {
     next();
   }
 
-  ExprPtr whole() {
+  ExprPtr parse() {
     ExprPtr expr = binary(1, 0);
     if (!token_.empty())
       fail(fmt::format("unexpected {}", quote(token_)),
@@ -94,10 +94,10 @@ class Parser {
     throw Fault{};
   }
 
-  Place here() const {
+  SourcePlace here() const {
     const std::string_view source = diagnostics_.source_from(place_.file, place_.line);
     if (!source.empty()) return place_in_scalar(place_, text_, token_start_, source);
-    Place at = place_;
+    SourcePlace at = place_;
     at.column += static_cast<int>(token_start_);
     return at;
   }
@@ -125,7 +125,7 @@ class Parser {
     }
   }
 
-  ExprPtr node(ExprOp op, const Place& place) {
+  ExprPtr node(ExprOp op, const SourcePlace& place) {
     auto out = std::make_unique<Expr>();
     out->op = op;
     out->place = place;
@@ -161,7 +161,7 @@ class Parser {
       return inner;
     }
     if (token_ == "-") {
-      const Place place = here();
+      const SourcePlace place = here();
       next();
       if (depth > kDepthMax) fail("the expression nests too deep", "write it simpler");
       ExprPtr inner = unary(depth + 1);
@@ -241,7 +241,7 @@ class Parser {
   }
 
   std::string_view text_;
-  Place place_;
+  SourcePlace place_;
   Diagnostics& diagnostics_;
   std::size_t at_ = 0;
   std::size_t token_start_ = 0;
@@ -278,14 +278,14 @@ std::string text_at(const Expr& expr, int level) {
 
 }  // namespace
 
-ExprPtr parse_expr(std::string_view text, const Place& place, Diagnostics& diagnostics) {
+ExprPtr parse_expr(std::string_view text, const SourcePlace& place, Diagnostics& diagnostics) {
   if (text.size() > kTextMax) {
     diagnostics.error(place, "the expression is too long",
                       fmt::format("at most {} characters are read", kTextMax));
     return nullptr;
   }
   try {
-    return Parser(text, place, diagnostics).whole();
+    return Parser(text, place, diagnostics).parse();
   } catch (const Fault&) {
     return nullptr;
   }

@@ -82,7 +82,7 @@ class Loader {
   }
 
  private:
-  void import(Spec& spec, const std::string& name, const Place& place) {
+  void import(Spec& spec, const std::string& name, const SourcePlace& place) {
     std::string file = file_of(spec.file, name);
     auto text = is_plain(name) && open_.size() < kSpecsMax ? read_file(file) : std::nullopt;
     if (const auto shipped = library_.find(name); !text && shipped != library_.end()) {

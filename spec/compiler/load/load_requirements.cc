@@ -113,14 +113,14 @@ struct Word {
 };
 
 /// A line without its comment: the words outside of brackets, and the text in `[...]`.
-struct Line {
+struct TraceLine {
   std::vector<Word> words;
   std::vector<Word> tags;
   std::size_t open = std::string::npos;  // A `[` that nothing closes.
 };
 
-Line line_of(const std::string& text) {
-  Line out;
+TraceLine line_of(const std::string& text) {
+  TraceLine out;
   bool quoted = false;
   int depth = 0;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -176,10 +176,12 @@ class CaseReader {
   }
 
  private:
-  Place place(int line, std::size_t at) const { return {file_, line, static_cast<int>(at) + 1}; }
+  SourcePlace place(int line, std::size_t at) const {
+    return {file_, line, static_cast<int>(at) + 1};
+  }
 
   void read_line(const std::string& text, int number) {
-    const Line line = line_of(text);
+    const TraceLine line = line_of(text);
     if (!line.words.empty() && line.words[0].text.starts_with('%')) return;
     if (line.open != std::string::npos) {
       diagnostics_.error(place(number, line.open), "'[' without ']'",
@@ -191,7 +193,7 @@ class CaseReader {
     for (const Word& tag : line.tags) read_tag(tag, number, negative);
   }
 
-  void begin_case(const Line& line, int number) {
+  void begin_case(const TraceLine& line, int number) {
     if (line.words.size() < 2) {
       diagnostics_.error(place(number, line.words[0].at), "a case without a name",
                          "one word was expected");
@@ -199,7 +201,7 @@ class CaseReader {
       return;
     }
     case_ = line.words[1].text;
-    const Place here = place(number, line.words[1].at);
+    const SourcePlace here = place(number, line.words[1].at);
     const auto [first, fresh] = places_.try_emplace(case_, here);
     if (fresh) return;
     diagnostics_.error(
@@ -230,7 +232,7 @@ class CaseReader {
   Model& model_;
   Diagnostics& diagnostics_;
   std::vector<std::string> ids_;
-  std::map<std::string, Place> places_;
+  std::map<std::string, SourcePlace> places_;
   std::set<std::tuple<std::string, std::string, bool>> seen_;
   std::string file_;
   std::string case_;

@@ -321,7 +321,7 @@ bool is_computed(const YAML::Node& instance) {
 ExprPtr read_expr(const YamlInput& input, const YAML::Node& node, std::string_view what) {
   const auto text = yaml_text(input, node, what);
   if (!text) return nullptr;
-  Place place = input.place(node);
+  SourcePlace place = input.place(node);
   if (node.Tag() == "!") ++place.column;  // After the quote.
   return parse_expr(*text, place, input.diagnostics);
 }
@@ -332,7 +332,8 @@ KeyPlaces places_of(const YamlInput& input, const YamlMap& map) {
   return out;
 }
 
-const Place& place_of(const KeyPlaces& places, std::string_view key, const Place& otherwise) {
+const SourcePlace& place_of(const KeyPlaces& places, std::string_view key,
+                            const SourcePlace& otherwise) {
   const auto found = places.find(key);
   return found == places.end() ? otherwise : found->second;
 }

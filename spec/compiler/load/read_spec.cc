@@ -73,7 +73,7 @@ void read_crc(const YamlInput& input, const YamlMap& map, Type& type) {
 void read_bits(const YamlInput& input, const YamlMap& map, Type& type) {
   type.is_mask = true;
   const auto width = map.integer("-mask");
-  const Place place = type.places.at("-mask");
+  const SourcePlace place = type.places.at("-mask");
   if (width && *width != 8 && *width != 16) {
     input.diagnostics.error(place, fmt::format("a mask of {} bits", *width),
                             "8 or 16 was expected");
@@ -105,7 +105,7 @@ void read_fields(const YamlInput& input, const YamlMap& map, const Spec& spec, T
     const YamlMap named(input, instances->value, "instances", Keys{});
     for (const YamlEntry& entry : named.entries()) {
       if (is_computed(entry.value)) {
-        const Place place = input.place(entry.key_node);
+        const SourcePlace place = input.place(entry.key_node);
         const std::string what = fmt::format("instance {} is computed", quote(entry.key));
         input.diagnostics.error_in_code(place, what, "a number or a type at pos was expected");
         input.diagnostics.note(place, what + "; it is not shown");

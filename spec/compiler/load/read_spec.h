@@ -33,17 +33,18 @@ ExprPtr read_expr(const YamlInput& input, const YAML::Node& node, std::string_vi
 /// Returns the places of the values of `map`'s keys.
 KeyPlaces places_of(const YamlInput& input, const YamlMap& map);
 /// Returns the place of `key`, or `otherwise`.
-const Place& place_of(const KeyPlaces& places, std::string_view key, const Place& otherwise);
+const SourcePlace& place_of(const KeyPlaces& places, std::string_view key,
+                            const SourcePlace& otherwise);
 
 /// Checks an id: lower snake case, no word of C++, not too long; reports what it is not.
-void check_id(Diagnostics& diagnostics, const Place& place, std::string_view id,
+void check_id(Diagnostics& diagnostics, const SourcePlace& place, std::string_view id,
               std::string_view what);
 
 /// Joins documentation: line ends become spaces, paragraphs go together.
 std::string one_line(std::string_view text);
 
 /// Returns null after an error. `place` is where the text begins.
-ExprPtr parse_expr(std::string_view text, const Place& place, Diagnostics& diagnostics);
+ExprPtr parse_expr(std::string_view text, const SourcePlace& place, Diagnostics& diagnostics);
 
 /// Returns the tree as text, bracketed only where needed: for diagnostics and the documentation.
 std::string to_text(const Expr& expr);

@@ -56,7 +56,7 @@ std::string_view kind_of(const YAML::Node& node) {
 
 }  // namespace
 
-Place YamlInput::place(const YAML::Node& node) const {
+SourcePlace YamlInput::place(const YAML::Node& node) const {
   const YAML::Mark mark = node.IsDefined() ? node.Mark() : YAML::Mark::null_mark();
   return {file, mark.line + 1, mark.column + 1};
 }

@@ -22,7 +22,7 @@ struct YamlInput {
   Diagnostics& diagnostics;
   int& budget;
 
-  Place place(const YAML::Node& node) const;
+  SourcePlace place(const YAML::Node& node) const;
   void error(const YAML::Node& node, std::string what, std::string_view expected = {}) const;
   /// Returns false once the budget is used up, which is reported once.
   bool spend(const YAML::Node& node) const;

@@ -118,12 +118,12 @@ class Rows {
     std::size_t n = 0;
     for (std::size_t i = parent + 1; i < decoded_[parent].end; i = decoded_[i].end, ++n) {
       const bool in_array = decoded_[parent].kind == NodeKind::kStructArray;
-      one(i, in_array ? fmt::format("{}[{}]", prefix, n)
-                      : prefix + (prefix.empty() ? "" : ".") + decoded_[i].field->name);
+      add_node(i, in_array ? fmt::format("{}[{}]", prefix, n)
+                           : prefix + (prefix.empty() ? "" : ".") + decoded_[i].field->name);
     }
   }
 
-  void one(std::size_t i, const std::string& path) {
+  void add_node(std::size_t i, const std::string& path) {
     const Node& node = decoded_[i];
     const Bytes bytes = decoded_.bytes.sub(node.offset, node.size);
     const std::size_t at = head_bytes_ + node.offset;

@@ -27,8 +27,8 @@ namespace <<spec>> {
 }  // namespace rubric
 )";
 
-std::string whole(const Spec& spec, const std::string& about, const std::set<std::string>& headers,
-                  const std::string& body) {
+std::string header_text(const Spec& spec, const std::string& about,
+                        const std::set<std::string>& headers, const std::string& body) {
   std::string includes;
   for (const std::string& header : headers) includes += "#include \"" + header + "\"\n";
   if (headers.empty()) includes = "#include <stdint.h>\n";
@@ -86,7 +86,7 @@ GeneratedFile structure(const Type& type, const Spec& spec) {
   for (const auto& f : type.instances) add_headers(*f, headers);
   const std::string body = emit_value(layout, spec) + "\n" + emit_view(layout, spec) + "\n" +
                            emit_write(layout, spec) + "\n" + emit_builder(layout, spec);
-  return {header_of(type), whole(spec, about(layout, spec), headers, body)};
+  return {header_of(type), header_text(spec, about(layout, spec), headers, body)};
 }
 
 bool has_structures(const Spec& spec) {
@@ -102,8 +102,8 @@ GeneratedFile all(const Spec& spec) {
     headers.insert("codec/generated/" + import->id + "/all.h");
   }
   return {"codec/generated/" + spec.id + "/all.h",
-          whole(spec, "// Everything of " + spec.id + ", for tests and tools.", headers,
-                emit_all(spec))};
+          header_text(spec, "// Everything of " + spec.id + ", for tests and tools.", headers,
+                      emit_all(spec))};
 }
 
 }  // namespace
@@ -115,17 +115,17 @@ std::vector<GeneratedFile> emit_cpp(const Spec& spec) {
   using namespace cpp;
   std::vector<GeneratedFile> out;
   if (!spec.enums.empty()) {
-    out.push_back(
-        {enums_header_of(spec),
-         whole(spec, "// Enums; a value without a name is kept as it is.", {}, emit_enums(spec))});
+    out.push_back({enums_header_of(spec),
+                   header_text(spec, "// Enums; a value without a name is kept as it is.", {},
+                               emit_enums(spec))});
   }
   for (const auto& type : spec.types) {
     if (!type->is_mask) {
       out.push_back(structure(*type, spec));
       continue;
     }
-    out.push_back({header_of(*type), whole(spec, comment(type->name + ". " + type->doc, "//"), {},
-                                           emit_mask(*type))});
+    out.push_back({header_of(*type), header_text(spec, comment(type->name + ". " + type->doc, "//"),
+                                                 {}, emit_mask(*type))});
   }
   if (has_structures(spec)) out.push_back(all(spec));
   return out;
