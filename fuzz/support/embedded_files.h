@@ -1,12 +1,13 @@
 // Files of the project that targets contain.
 #pragma once
 
-#include <string_view>
+#include <map>
+#include <string>
 
 namespace rubric::fuzz {
 
-/// Returns the text of a file by its path in the project ("spec/requirements.yaml"); null for those
-/// that fuzz/CMakeLists.txt does not name. Generated when the program is built.
-const char* embedded_file(std::string_view name);
+/// Returns texts by paths in the project, "spec/requirements.yaml": of the files that
+/// fuzz/CMakeLists.txt names. Generated when the program is built.
+const std::map<std::string, std::string>& embedded_files();
 
 }  // namespace rubric::fuzz

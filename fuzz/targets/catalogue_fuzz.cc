@@ -42,7 +42,7 @@ const std::vector<rubricc::Requirement>& rules() {
   static const std::vector<rubricc::Requirement> all = [] {
     Model model;
     Diagnostics diagnostics;
-    rubricc::load_requirements_text(kRules, rubric::fuzz::embedded_file(kRules), model,
+    rubricc::load_requirements_text(kRules, rubric::fuzz::embedded_files().at(kRules), model,
                                     diagnostics);
     require(diagnostics.empty(), "the project's own rules are good");
     return model.requirements;

@@ -23,7 +23,7 @@ const std::vector<rubricc::Requirement>& rules() {
   static const std::vector<rubricc::Requirement> all = [] {
     rubricc::Model model;
     rubricc::Diagnostics diagnostics;
-    rubricc::load_requirements_text(kRules, rubric::fuzz::embedded_file(kRules), model,
+    rubricc::load_requirements_text(kRules, rubric::fuzz::embedded_files().at(kRules), model,
                                     diagnostics);
     return model.requirements;
   }();
@@ -34,7 +34,7 @@ const std::vector<rubricc::Requirement>& rules() {
 void load(const std::string& text, rubricc::Model& model, rubricc::Diagnostics& diagnostics) {
   model.requirements = rules();
   if (text.find("tinyos") != std::string::npos) {
-    rubricc::load_spec_text(kImport, rubric::fuzz::embedded_file(kImport), model, diagnostics);
+    rubricc::load_spec_text(kImport, rubric::fuzz::embedded_files().at(kImport), model, diagnostics);
   }
   rubricc::load_spec_text(kInput, text, model, diagnostics);
   rubricc::check_model(model, diagnostics);

@@ -1,8 +1,7 @@
-#include "tools/commands/new_adapter.h"
-
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -38,6 +37,21 @@ constexpr Language kLanguages[] = {
     {"java", "javac *.java", "java -cp . Adapter"},
 };
 
+/// Returns names and texts of a language's files. Python's loop is that of the adapter that ships.
+std::vector<std::pair<fs::path, std::string>> skeleton_of(std::string_view language) {
+  constexpr std::string_view kShipped = "rubric_python_mote 1.0";
+  std::vector<std::pair<fs::path, std::string>> files;
+  for (const auto& [path, content] : skeleton_files()) {
+    const fs::path file(path);
+    if (file.parent_path().filename() != language) continue;
+    std::string own(content);
+    const std::size_t name = own.find(kShipped);
+    if (name != own.npos) own.replace(name, kShipped.size(), "my_mote 0.1");
+    files.emplace_back(file.filename(), own);
+  }
+  return files;
+}
+
 struct NewAdapterOptions {
   std::string language;
   std::string out = ".";
@@ -60,10 +74,7 @@ void write_skeleton(const NewAdapterOptions& options) {
   std::error_code error;
   fs::create_directories(options.out, error);
   if (error) refuse(options.out, error.message());
-  std::vector<std::pair<fs::path, std::string>> files;
-  for (const SkeletonFile& file : skeleton_files()) {
-    if (file.language == language.name) files.emplace_back(file.name, file.text);
-  }
+  std::vector<std::pair<fs::path, std::string>> files = skeleton_of(language.name);
   files.emplace_back(kKnown, suite::list_to_begin_with(suite::Cases::own(), machine::Role::kMote));
   for (auto& [path, text] : files) {
     path = fs::path(options.out) / path;
