@@ -15,12 +15,11 @@ import unittest
 HERE = pathlib.Path(__file__).resolve().parent
 RUBRIC = None
 KAITAI_CHECK = "spec/kaitai_check"  # Where npm put Kaitai Struct.
-DISSECTOR = "tools/wireshark/generated/rubric.lua"
 
 
-def compare(script, *arguments, code):
-    done = subprocess.run([sys.executable, str(HERE / script), "--rubric", RUBRIC, *arguments],
-                          capture_output=True, text=True, check=False)
+def compare(*arguments, code):
+    done = subprocess.run([sys.executable, str(HERE / "compare.py"), "--rubric", RUBRIC,
+                           *arguments], capture_output=True, text=True, check=False)
     assert done.returncode == code, (done.returncode, done.stdout[-3000:], done.stderr[-3000:])
     return done.stdout
 
@@ -46,7 +45,7 @@ class Scratch(unittest.TestCase):
 
 class Kaitai(Scratch):
     def kaitai(self, specs, code, *arguments):
-        return compare("compare.py", "--count", "10000", *arguments, "--", "node",
+        return compare("--count", "10000", *arguments, "--", "node",
                        str(HERE / "kaitai_decoder.js"), str(specs), KAITAI_CHECK, code=code)
 
     def test_agrees(self):
@@ -75,47 +74,13 @@ class Kaitai(Scratch):
         self.assert_names(said, "net_msg.seq_num should have been")
 
 
-class Tshark(Scratch):
-    def tshark(self, code, *arguments):
-        return compare("compare_tshark.py", "--count", "4000", *arguments, code=code)
-
-    def planted(self, old, new):
-        return self.tshark(1, "--dissector", str(self.patched(DISSECTOR, old, new)))
-
-    def test_agrees(self):
-        self.assert_names(self.tshark(0), "4000 frames: ", " 0 disagreements")
-
-    def test_a_bound_that_is_off_is_found(self):
-        said = self.planted("min = 0, max = 114", "min = 0, max = 115")
-        self.assert_names(said, "rubric explain WIRE-AM-LENGTH", "out_of_range at byte 5 by")
-
-    def test_a_crc_that_is_not_checked_is_found(self):
-        said = self.planted("if found == right then", "if true then")
-        self.assert_names(said, "the CRC is wrong", "rubric explain WIRE-SERIAL-CRC",
-                          "was accepted")
-
-    def test_a_wrong_offset_is_found(self):
-        said = self.planted("return true, at + width", "return true, at + 1")
-        self.assert_names(said, "am_header.", "was refused")
-
-    def test_a_number_read_wrongly_is_found(self):
-        """Nothing is refused or accepted wrongly then; the fields show it."""
-        field = '{name = "seq_num", kind = "uint", width = 2'
-        said = self.planted(field, field + ", little = true")
-        self.assert_names(said, "seq_num should have been")
-
-    def test_a_crash_is_found(self):
-        said = self.planted("if size >= 3 then", "if true then")
-        self.assert_names(said, '"crash": "_ws.malformed"')
-
-
 class Harness(Scratch):
     """Decoders of which the harness alone is tried."""
 
     def decoder(self, code, body, *arguments):
         script = self.folder / "decoder.py"
         script.write_text("import json, sys\n" + textwrap.dedent(body), "utf-8")
-        return compare("compare.py", "--count", "300", *arguments, "--", sys.executable,
+        return compare("--count", "300", *arguments, "--", sys.executable,
                        str(script), code=code)
 
     def test_the_decoder_of_the_readme_runs(self):
@@ -159,7 +124,7 @@ class Harness(Scratch):
         self.assert_names(said, 'the answer was {"accept": "yes"}')
 
     def test_a_program_that_is_not_there(self):
-        compare("compare.py", "--count", "10", "--", str(self.folder / "none"), code=2)
+        compare("--count", "10", "--", str(self.folder / "none"), code=2)
 
 
 if __name__ == "__main__":

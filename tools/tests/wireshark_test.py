@@ -287,6 +287,8 @@ class Dissector(unittest.TestCase):
         text = source.read_text(encoding="utf-8")
         for right, wrong in (("return true, at + width", "return true, at + 1"),
                              (">= field.min", ">= field.min - 1000"),
+                             ("min = 0, max = 114", "min = 0, max = 115"),
+                             ("if found == right then", "if true then"),
                              ('"tinyos.am_header"] = {\n  name = "am_header", max = 8',
                               '"tinyos.am_header"] = {\n  name = "am_header", max = 7')):
             self.assertIn(right, text)
@@ -300,6 +302,7 @@ class Dissector(unittest.TestCase):
 
     def compare_one(self):
         self.compare(ROOT / FIRMWARE / "h4_stale_bytes.pcapng")
+        self.compare(self.pcapng(self.generated("hdlc"), "--input-format", "hdlc"))
 
     def test_syntax_of_both_lua_versions(self):
         for luac in ("luac5.2", "luac5.4"):
