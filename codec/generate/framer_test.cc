@@ -1,4 +1,5 @@
-// The framer and the readers agree about the framer's containers.
+// The framer breaks every rule of the wire that it can. generate_cli_test compares its frames with
+// what `rubric decode` says of them.
 #include "codec/generate/framer.h"
 
 #include <gtest/gtest.h>
@@ -9,15 +10,15 @@
 #include <string>
 #include <string_view>
 
-#include "codec/containers/writer.h"
 #include "codec/generate/known_protocols.h"
 #include "codec/generate/routes.h"
-#include "codec/reflect/frame.h"
 #include "codec/reflect/registry.h"
 #include "codec/reflect/requirements.h"
 
 namespace rubric::generate {
 namespace {
+
+using RuleSet = std::set<ReqId, reflect::CatalogueOrder>;
 
 constexpr int kFramesOfRoute = 200;
 
@@ -49,60 +50,6 @@ std::vector<Framed> frames_of(const Known& known, InputFormat container, std::ui
 }
 
 using RuleSet = std::set<ReqId, reflect::CatalogueOrder>;
-
-/// Writes and reads the frames; a frame that does not come back as it should is a failure.
-void round_trip(const Known& known, InputFormat container, const std::vector<Framed>& frames,
-                RuleSet& broken) {
-  const auto writer = make_writer(container);
-  std::string file;
-  writer->begin(file);
-  for (const Framed& framed : frames) {
-    // Hex text shows no fault in the content, and has no other.
-    ASSERT_TRUE(writer->write(framed.view(), {}, file)) << described(framed);
-  }
-  writer->finish(file);
-  const reflect::FrameDecoder decoder(known.reader);
-  reflect::Frame frame;
-  std::size_t index = 0;
-  const auto take = [&](const Packet& packet) {
-    ASSERT_LT(index, frames.size());
-    const Framed& framed = frames[index++];
-    decoder.decode(packet, frame);
-    ASSERT_EQ(frame.error, framed.error)
-        << described(framed) << "\nthe decoder: " << text(frame.error);
-    ASSERT_EQ(rubric::testing::to_hex(packet.bytes), rubric::testing::to_hex(framed.view().bytes));
-    ASSERT_EQ(packet.kind, framed.packet.kind);
-    ASSERT_EQ(packet.fcs, framed.packet.fcs);
-    if (framed.valid()) {
-      ASSERT_EQ(names(framed.path.data(), framed.path.size()),
-                names(frame.decoded.path(), frame.decoded.path_count()));
-    }
-    if (!framed.valid()) broken.insert(framed.error.requirement);
-  };
-  const auto reader = make_reader(container);
-  auto guarded = [&](const Packet& packet) {
-    if (!::testing::Test::HasFatalFailure()) take(packet);
-  };
-  reader->feed(rubric::testing::view(file), guarded);
-  reader->finish(guarded);
-  if (::testing::Test::HasFatalFailure()) return;
-  EXPECT_EQ(index, frames.size());
-}
-
-TEST(Framer, ReadersReportWhatTheFramerBroke) {
-  for (const Known& known : all_known()) {
-    for (const InputFormat container : kContainers) {
-      for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-        RuleSet broken;
-        const std::vector<Framed> frames = frames_of(known, container, seed);
-        if (frames.empty()) continue;  // The radio's acknowledgement, in a stream.
-        round_trip(known, container, frames, broken);
-        if (HasFatalFailure()) return;
-        EXPECT_GE(broken.size(), 1U);
-      }
-    }
-  }
-}
 
 // The rules of the wire that no generated frame breaks, and why.
 constexpr const char* kOfTheStream = "is about the stream or file around the frames";
