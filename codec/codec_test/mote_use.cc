@@ -10,16 +10,16 @@ using namespace rubric::rubicon;
 
 #define MOTE_USE extern "C" __attribute__((noinline, used))
 
-#define MOTE_USES(name, Name)                                                     \
-  MOTE_USE bool name##_parse(const uint8_t* p, size_t n, Name& out) {             \
-    const Result<Name##View> view = Name##View::parse(Bytes(p, n));               \
-    if (!view) return false;                                                      \
-    out = view->to_value();                                                       \
-    return true;                                                                  \
-  }                                                                               \
-  MOTE_USE size_t name##_write(const Name& value, uint8_t* p, size_t n) {         \
-    const Result<MutableBytes> out = write(value, MutableBytes(p, n));            \
-    return out ? out->size() : 0;                                                 \
+#define MOTE_USES(name, Name)                                             \
+  MOTE_USE bool name##_parse(const uint8_t* p, size_t n, Name& out) {     \
+    const Result<Name##View> view = Name##View::parse(Bytes(p, n));       \
+    if (!view) return false;                                              \
+    out = view->to_value();                                               \
+    return true;                                                          \
+  }                                                                       \
+  MOTE_USE size_t name##_write(const Name& value, uint8_t* p, size_t n) { \
+    const Result<MutableBytes> out = write(value, MutableBytes(p, n));    \
+    return out ? out->size() : 0;                                         \
   }
 
 MOTE_USES(join_request, JoinRequest)

@@ -34,7 +34,8 @@ const std::vector<rubricc::Requirement>& rules() {
 void load(const std::string& text, rubricc::Model& model, rubricc::Diagnostics& diagnostics) {
   model.requirements = rules();
   if (text.find("tinyos") != std::string::npos) {
-    rubricc::load_spec_text(kImport, rubric::fuzz::embedded_files().at(kImport), model, diagnostics);
+    rubricc::load_spec_text(kImport, rubric::fuzz::embedded_files().at(kImport), model,
+                            diagnostics);
   }
   rubricc::load_spec_text(kInput, text, model, diagnostics);
   rubricc::check_model(model, diagnostics);

@@ -63,9 +63,8 @@ void check_mask(std::uint16_t one, std::uint16_t other) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   const Bytes bytes(data, size);
-  for_each_view_of_all([&]<class View>(const std::string&, ViewTag<View>) {
-    check<View>(bytes, data[size - 1]);
-  });
+  for_each_view_of_all(
+      [&]<class View>(const std::string&, ViewTag<View>) { check<View>(bytes, data[size - 1]); });
   if (size < 4) return 0;
   check_mask<rubicon::ActuatorMask>(data[0], data[1]);
   check_mask<rubicon::TransducerMask>(load_be16(data), load_be16(data + 2));

@@ -6,7 +6,8 @@
 namespace rubricc::cpp {
 namespace {
 
-const char kAll[] = R"(/// visit_fields: the fields of a value or of a view in order: visitor(name, field).
+const char kAll[] =
+    R"(/// visit_fields: the fields of a value or of a view in order: visitor(name, field).
 /// visit_parts: the messages that a view reads its bytes as: visitor(bytes, view of the message).
 <<visits>>
 /// Calls visitor(name, ViewTag) for every structure of the spec.
