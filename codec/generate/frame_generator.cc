@@ -67,8 +67,8 @@ Draft FrameGenerator::draft(const reflect::Route& route) {
       is_bare(route) ? route.type : reflect::find_carrier(protocol_, route.carrier);
   const bool radio = is_radio(route);
   for (int i = 0; carrier && i < kTries; ++i) {
-    FrameWriter writer(route, radio, most_bytes(radio), random_);
-    if (writer.write(*carrier)) return std::move(writer.draft());
+    Draft out;
+    if (write_frame(route, *carrier, radio, most_bytes(radio), random_, out)) return out;
   }
   throw std::logic_error("no frame of " + std::string(protocol_.id) + " leads to " +
                          route.type->name + " on " + route.carrier);
