@@ -14,7 +14,8 @@
 namespace rubric {
 namespace oscilloscope {
 
-/// The fields of a value or of a view in order: visitor(name, field).
+/// visit_fields: the fields of a value or of a view in order: visitor(name, field).
+/// visit_parts: the messages that a view reads its bytes as: visitor(bytes, view of the message).
 template <class Visitor>
 void visit_fields(Oscilloscope& value, Visitor& visitor) {
   visitor("am", value.am);
@@ -24,6 +25,12 @@ template <class Visitor>
 void visit_fields(OscilloscopeView view, Visitor& visitor) {
   visitor("am", view.am());
   visitor("payload", view.payload());
+}
+template <class Visitor>
+void visit_parts(OscilloscopeView view, Visitor& visitor) {
+  if (view.payload_kind() == OscilloscopeView::PayloadKind::kOscilloscopeMsg) {
+    visitor(view.payload(), view.payload_as_oscilloscope_msg());
+  }
 }
 template <class Visitor>
 void visit_fields(RadioIFrame& value, Visitor& visitor) {
@@ -40,6 +47,12 @@ void visit_fields(RadioIFrameView view, Visitor& visitor) {
   visitor("payload", view.payload());
 }
 template <class Visitor>
+void visit_parts(RadioIFrameView view, Visitor& visitor) {
+  if (view.payload_kind() == RadioIFrameView::PayloadKind::kOscilloscopeMsg) {
+    visitor(view.payload(), view.payload_as_oscilloscope_msg());
+  }
+}
+template <class Visitor>
 void visit_fields(RadioTFrame& value, Visitor& visitor) {
   visitor("mac", value.mac);
   visitor("type", value.type);
@@ -50,6 +63,12 @@ void visit_fields(RadioTFrameView view, Visitor& visitor) {
   visitor("mac", view.mac());
   visitor("type", view.type());
   visitor("payload", view.payload());
+}
+template <class Visitor>
+void visit_parts(RadioTFrameView view, Visitor& visitor) {
+  if (view.payload_kind() == RadioTFrameView::PayloadKind::kOscilloscopeMsg) {
+    visitor(view.payload(), view.payload_as_oscilloscope_msg());
+  }
 }
 template <class Visitor>
 void visit_fields(OscilloscopeMsg& value, Visitor& visitor) {
@@ -66,6 +85,9 @@ void visit_fields(OscilloscopeMsgView view, Visitor& visitor) {
   visitor("id", view.id());
   visitor("count", view.count());
   visitor("readings", view.readings());
+}
+template <class Visitor>
+void visit_parts(OscilloscopeMsgView, Visitor&) {
 }
 /// Calls visitor(name, ViewTag) for every structure of the spec.
 template <class Visitor>

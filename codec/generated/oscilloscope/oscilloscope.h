@@ -47,11 +47,14 @@ struct OscilloscopeLayout {
   }
 };
 
+class OscilloscopeBuilder;
+
 /// A lens on the bytes of oscilloscope; copy it like a pointer. Somebody
 /// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class OscilloscopeView {
  public:
   using Value = Oscilloscope;
+  using Builder = OscilloscopeBuilder;
   static constexpr size_t kMinSizeBytes = 8;
   static constexpr size_t kMaxSizeBytes = 122;
   /// What the bytes of payload may hold.

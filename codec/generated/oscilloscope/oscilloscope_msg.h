@@ -54,11 +54,14 @@ struct OscilloscopeMsgLayout {
   }
 };
 
+class OscilloscopeMsgBuilder;
+
 /// A lens on the bytes of oscilloscope_msg; copy it like a pointer. Somebody
 /// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class OscilloscopeMsgView {
  public:
   using Value = OscilloscopeMsg;
+  using Builder = OscilloscopeMsgBuilder;
   static constexpr size_t kMinSizeBytes = 28;
   static constexpr size_t kMaxSizeBytes = 28;
 

@@ -51,11 +51,14 @@ struct RadioIFrameLayout {
   }
 };
 
+class RadioIFrameBuilder;
+
 /// A lens on the bytes of radio_i_frame; copy it like a pointer. Somebody
 /// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class RadioIFrameView {
  public:
   using Value = RadioIFrame;
+  using Builder = RadioIFrameBuilder;
   static constexpr size_t kMinSizeBytes = 11;
   static constexpr size_t kMaxSizeBytes = SIZE_MAX;
   /// What the bytes of payload may hold.

@@ -44,11 +44,14 @@ struct RadioTFrameLayout {
   }
 };
 
+class RadioTFrameBuilder;
+
 /// A lens on the bytes of radio_t_frame; copy it like a pointer. Somebody
 /// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class RadioTFrameView {
  public:
   using Value = RadioTFrame;
+  using Builder = RadioTFrameBuilder;
   static constexpr size_t kMinSizeBytes = 10;
   static constexpr size_t kMaxSizeBytes = SIZE_MAX;
   /// What the bytes of payload may hold.

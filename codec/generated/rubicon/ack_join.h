@@ -50,11 +50,14 @@ struct AckJoinLayout {
   }
 };
 
+class AckJoinBuilder;
+
 /// A lens on the bytes of ack_join; copy it like a pointer. Somebody
 /// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class AckJoinView {
  public:
   using Value = AckJoin;
+  using Builder = AckJoinBuilder;
   static constexpr size_t kMinSizeBytes = 14;
   static constexpr size_t kMaxSizeBytes = 14;
 

@@ -49,7 +49,8 @@
 namespace rubric {
 namespace rubicon {
 
-/// The fields of a value or of a view in order: visitor(name, field).
+/// visit_fields: the fields of a value or of a view in order: visitor(name, field).
+/// visit_parts: the messages that a view reads its bytes as: visitor(bytes, view of the message).
 template <class Visitor>
 void visit_fields(Rubicon& value, Visitor& visitor) {
   visitor("am", value.am);
@@ -59,6 +60,27 @@ template <class Visitor>
 void visit_fields(RubiconView view, Visitor& visitor) {
   visitor("am", view.am());
   visitor("payload", view.payload());
+}
+template <class Visitor>
+void visit_parts(RubiconView view, Visitor& visitor) {
+  if (view.payload_kind() == RubiconView::PayloadKind::kCommand) {
+    visitor(view.payload(), view.payload_as_command());
+  }
+  if (view.payload_kind() == RubiconView::PayloadKind::kSerialData) {
+    visitor(view.payload(), view.payload_as_serial_data());
+  }
+  if (view.payload_kind() == RubiconView::PayloadKind::kLearningModuleCmd) {
+    visitor(view.payload(), view.payload_as_learning_module_cmd());
+  }
+  if (view.payload_kind() == RubiconView::PayloadKind::kLearningModuleFloatCmd) {
+    visitor(view.payload(), view.payload_as_learning_module_float_cmd());
+  }
+  if (view.payload_kind() == RubiconView::PayloadKind::kNetMsg) {
+    visitor(view.payload(), view.payload_as_net_msg());
+  }
+  if (view.payload_kind() == RubiconView::PayloadKind::kConfig) {
+    visitor(view.payload(), view.payload_as_config());
+  }
 }
 template <class Visitor>
 void visit_fields(RadioIFrame& value, Visitor& visitor) {
@@ -75,6 +97,24 @@ void visit_fields(RadioIFrameView view, Visitor& visitor) {
   visitor("payload", view.payload());
 }
 template <class Visitor>
+void visit_parts(RadioIFrameView view, Visitor& visitor) {
+  if (view.payload_kind() == RadioIFrameView::PayloadKind::kRssiBeacon) {
+    visitor(view.payload(), view.payload_as_rssi_beacon());
+  }
+  if (view.payload_kind() == RadioIFrameView::PayloadKind::kJoinRequest) {
+    visitor(view.payload(), view.payload_as_join_request());
+  }
+  if (view.payload_kind() == RadioIFrameView::PayloadKind::kJoinReply) {
+    visitor(view.payload(), view.payload_as_join_reply());
+  }
+  if (view.payload_kind() == RadioIFrameView::PayloadKind::kNetMsg) {
+    visitor(view.payload(), view.payload_as_net_msg());
+  }
+  if (view.payload_kind() == RadioIFrameView::PayloadKind::kAckJoin) {
+    visitor(view.payload(), view.payload_as_ack_join());
+  }
+}
+template <class Visitor>
 void visit_fields(RadioTFrame& value, Visitor& visitor) {
   visitor("mac", value.mac);
   visitor("type", value.type);
@@ -87,6 +127,24 @@ void visit_fields(RadioTFrameView view, Visitor& visitor) {
   visitor("payload", view.payload());
 }
 template <class Visitor>
+void visit_parts(RadioTFrameView view, Visitor& visitor) {
+  if (view.payload_kind() == RadioTFrameView::PayloadKind::kRssiBeacon) {
+    visitor(view.payload(), view.payload_as_rssi_beacon());
+  }
+  if (view.payload_kind() == RadioTFrameView::PayloadKind::kJoinRequest) {
+    visitor(view.payload(), view.payload_as_join_request());
+  }
+  if (view.payload_kind() == RadioTFrameView::PayloadKind::kJoinReply) {
+    visitor(view.payload(), view.payload_as_join_reply());
+  }
+  if (view.payload_kind() == RadioTFrameView::PayloadKind::kNetMsg) {
+    visitor(view.payload(), view.payload_as_net_msg());
+  }
+  if (view.payload_kind() == RadioTFrameView::PayloadKind::kAckJoin) {
+    visitor(view.payload(), view.payload_as_ack_join());
+  }
+}
+template <class Visitor>
 void visit_fields(RAddr& value, Visitor& visitor) {
   visitor("pid", value.pid);
   visitor("devid", value.devid);
@@ -95,6 +153,9 @@ template <class Visitor>
 void visit_fields(RAddrView view, Visitor& visitor) {
   visitor("pid", view.pid());
   visitor("devid", view.devid());
+}
+template <class Visitor>
+void visit_parts(RAddrView, Visitor&) {
 }
 template <class Visitor>
 void visit_fields(MoteDesc& value, Visitor& visitor) {
@@ -107,6 +168,9 @@ void visit_fields(MoteDescView view, Visitor& visitor) {
   visitor("mote_type", view.mote_type());
   visitor("transducers", view.transducers());
   visitor("actuators", view.actuators());
+}
+template <class Visitor>
+void visit_parts(MoteDescView, Visitor&) {
 }
 template <class Visitor>
 void visit_fields(NetMsg& value, Visitor& visitor) {
@@ -126,6 +190,15 @@ void visit_fields(NetMsgView view, Visitor& visitor) {
   visitor("payload", view.payload());
 }
 template <class Visitor>
+void visit_parts(NetMsgView view, Visitor& visitor) {
+  if (view.payload_kind() == NetMsgView::PayloadKind::kAppMsgFromPc) {
+    visitor(view.payload(), view.payload_as_app_msg_from_pc());
+  }
+  if (view.payload_kind() == NetMsgView::PayloadKind::kAppMsg) {
+    visitor(view.payload(), view.payload_as_app_msg());
+  }
+}
+template <class Visitor>
 void visit_fields(AppMsg& value, Visitor& visitor) {
   visitor("trans_id", value.trans_id);
   visitor("app_id", value.app_id);
@@ -136,6 +209,42 @@ void visit_fields(AppMsgView view, Visitor& visitor) {
   visitor("trans_id", view.trans_id());
   visitor("app_id", view.app_id());
   visitor("payload", view.payload());
+}
+template <class Visitor>
+void visit_parts(AppMsgView view, Visitor& visitor) {
+  if (view.body_kind() == AppMsgView::BodyKind::kSerialJoined) {
+    visitor(view.payload(), view.body_as_serial_joined());
+  }
+  if (view.body_kind() == AppMsgView::BodyKind::kUpdates) {
+    visitor(view.payload(), view.body_as_updates());
+  }
+  if (view.body_kind() == AppMsgView::BodyKind::kReadUpdates) {
+    visitor(view.payload(), view.body_as_read_updates());
+  }
+  if (view.body_kind() == AppMsgView::BodyKind::kDemo) {
+    visitor(view.payload(), view.body_as_demo());
+  }
+  if (view.body_kind() == AppMsgView::BodyKind::kDemoData) {
+    visitor(view.payload(), view.body_as_demo_data());
+  }
+  if (view.body_kind() == AppMsgView::BodyKind::kLearningNotification) {
+    visitor(view.payload(), view.body_as_learning_notification());
+  }
+  if (view.body_kind() == AppMsgView::BodyKind::kLearningModuleDown) {
+    visitor(view.payload(), view.body_as_learning_module_down());
+  }
+  if (view.body_kind() == AppMsgView::BodyKind::kLearningOutput) {
+    visitor(view.payload(), view.body_as_learning_output());
+  }
+  if (view.body_kind() == AppMsgView::BodyKind::kRubiconAck) {
+    visitor(view.payload(), view.body_as_rubicon_ack());
+  }
+  if (view.body_kind() == AppMsgView::BodyKind::kRubiconAckSeqOnly) {
+    visitor(view.payload(), view.body_as_rubicon_ack_seq_only());
+  }
+  if (view.body_kind() == AppMsgView::BodyKind::kSynapticData) {
+    visitor(view.payload(), view.body_as_synaptic_data());
+  }
 }
 template <class Visitor>
 void visit_fields(AppMsgFromPc& value, Visitor& visitor) {
@@ -150,6 +259,48 @@ void visit_fields(AppMsgFromPcView view, Visitor& visitor) {
   visitor("payload", view.payload());
 }
 template <class Visitor>
+void visit_parts(AppMsgFromPcView view, Visitor& visitor) {
+  if (view.body_kind() == AppMsgFromPcView::BodyKind::kSerialJoined) {
+    visitor(view.payload(), view.body_as_serial_joined());
+  }
+  if (view.body_kind() == AppMsgFromPcView::BodyKind::kUpdates) {
+    visitor(view.payload(), view.body_as_updates());
+  }
+  if (view.body_kind() == AppMsgFromPcView::BodyKind::kReadUpdates) {
+    visitor(view.payload(), view.body_as_read_updates());
+  }
+  if (view.body_kind() == AppMsgFromPcView::BodyKind::kDemo) {
+    visitor(view.payload(), view.body_as_demo());
+  }
+  if (view.body_kind() == AppMsgFromPcView::BodyKind::kDemoData) {
+    visitor(view.payload(), view.body_as_demo_data());
+  }
+  if (view.body_kind() == AppMsgFromPcView::BodyKind::kBroadcastCmd) {
+    visitor(view.payload(), view.body_as_broadcast_cmd());
+  }
+  if (view.body_kind() == AppMsgFromPcView::BodyKind::kSynCreateCmd) {
+    visitor(view.payload(), view.body_as_syn_create_cmd());
+  }
+  if (view.body_kind() == AppMsgFromPcView::BodyKind::kLearningModuleCmd) {
+    visitor(view.payload(), view.body_as_learning_module_cmd());
+  }
+  if (view.body_kind() == AppMsgFromPcView::BodyKind::kLearningModuleFloatCmd) {
+    visitor(view.payload(), view.body_as_learning_module_float_cmd());
+  }
+  if (view.body_kind() == AppMsgFromPcView::BodyKind::kNetidCmd) {
+    visitor(view.payload(), view.body_as_netid_cmd());
+  }
+  if (view.body_kind() == AppMsgFromPcView::BodyKind::kRubiconAck) {
+    visitor(view.payload(), view.body_as_rubicon_ack());
+  }
+  if (view.body_kind() == AppMsgFromPcView::BodyKind::kRubiconAckSeqOnly) {
+    visitor(view.payload(), view.body_as_rubicon_ack_seq_only());
+  }
+  if (view.body_kind() == AppMsgFromPcView::BodyKind::kSynapticData) {
+    visitor(view.payload(), view.body_as_synaptic_data());
+  }
+}
+template <class Visitor>
 void visit_fields(RubiconAck& value, Visitor& visitor) {
   visitor("type", value.type);
   visitor("seq_num", value.seq_num);
@@ -162,12 +313,18 @@ void visit_fields(RubiconAckView view, Visitor& visitor) {
   visitor("ack", view.ack());
 }
 template <class Visitor>
+void visit_parts(RubiconAckView, Visitor&) {
+}
+template <class Visitor>
 void visit_fields(RubiconAckSeqOnly& value, Visitor& visitor) {
   visitor("seq_num", value.seq_num);
 }
 template <class Visitor>
 void visit_fields(RubiconAckSeqOnlyView view, Visitor& visitor) {
   visitor("seq_num", view.seq_num());
+}
+template <class Visitor>
+void visit_parts(RubiconAckSeqOnlyView, Visitor&) {
 }
 template <class Visitor>
 void visit_fields(SynapticData& value, Visitor& visitor) {
@@ -178,6 +335,9 @@ void visit_fields(SynapticDataView view, Visitor& visitor) {
   visitor("values", view.values());
 }
 template <class Visitor>
+void visit_parts(SynapticDataView, Visitor&) {
+}
+template <class Visitor>
 void visit_fields(JoinRequest& value, Visitor& visitor) {
   visitor("seq_num", value.seq_num);
   visitor("mote_desc", value.mote_desc);
@@ -186,6 +346,9 @@ template <class Visitor>
 void visit_fields(JoinRequestView view, Visitor& visitor) {
   visitor("seq_num", view.seq_num());
   visitor("mote_desc", view.mote_desc());
+}
+template <class Visitor>
+void visit_parts(JoinRequestView, Visitor&) {
 }
 template <class Visitor>
 void visit_fields(JoinReply& value, Visitor& visitor) {
@@ -202,6 +365,9 @@ void visit_fields(JoinReplyView view, Visitor& visitor) {
   visitor("seq_num", view.seq_num());
 }
 template <class Visitor>
+void visit_parts(JoinReplyView, Visitor&) {
+}
+template <class Visitor>
 void visit_fields(AckJoin& value, Visitor& visitor) {
   visitor("dest", value.dest);
   visitor("src", value.src);
@@ -214,6 +380,9 @@ void visit_fields(AckJoinView view, Visitor& visitor) {
   visitor("src", view.src());
   visitor("seq_num", view.seq_num());
   visitor("mote_desc", view.mote_desc());
+}
+template <class Visitor>
+void visit_parts(AckJoinView, Visitor&) {
 }
 template <class Visitor>
 void visit_fields(SerialJoined& value, Visitor& visitor) {
@@ -234,6 +403,9 @@ void visit_fields(SerialJoinedView view, Visitor& visitor) {
   visitor("actuators", view.actuators());
 }
 template <class Visitor>
+void visit_parts(SerialJoinedView, Visitor&) {
+}
+template <class Visitor>
 void visit_fields(Config& value, Visitor& visitor) {
   visitor("type", value.type);
   visitor("value", value.value);
@@ -242,6 +414,9 @@ template <class Visitor>
 void visit_fields(ConfigView view, Visitor& visitor) {
   visitor("type", view.type());
   visitor("value", view.value());
+}
+template <class Visitor>
+void visit_parts(ConfigView, Visitor&) {
 }
 template <class Visitor>
 void visit_fields(Command& value, Visitor& visitor) {
@@ -254,6 +429,9 @@ void visit_fields(CommandView view, Visitor& visitor) {
   visitor("type", view.type());
   visitor("counter", view.counter());
   visitor("delay", view.delay());
+}
+template <class Visitor>
+void visit_parts(CommandView, Visitor&) {
 }
 template <class Visitor>
 void visit_fields(Data& value, Visitor& visitor) {
@@ -270,6 +448,9 @@ void visit_fields(DataView view, Visitor& visitor) {
   visitor("humid", view.humid());
   visitor("light", view.light());
   visitor("rssi", view.rssi());
+}
+template <class Visitor>
+void visit_parts(DataView, Visitor&) {
 }
 template <class Visitor>
 void visit_fields(SerialData& value, Visitor& visitor) {
@@ -292,6 +473,9 @@ void visit_fields(SerialDataView view, Visitor& visitor) {
   visitor("rssi", view.rssi());
 }
 template <class Visitor>
+void visit_parts(SerialDataView, Visitor&) {
+}
+template <class Visitor>
 void visit_fields(Demo& value, Visitor& visitor) {
   visitor("msg_type", value.msg_type);
   visitor("sensors_bitmask", value.sensors_bitmask);
@@ -302,6 +486,9 @@ void visit_fields(DemoView view, Visitor& visitor) {
   visitor("msg_type", view.msg_type());
   visitor("sensors_bitmask", view.sensors_bitmask());
   visitor("period", view.period());
+}
+template <class Visitor>
+void visit_parts(DemoView, Visitor&) {
 }
 template <class Visitor>
 void visit_fields(Complete& value, Visitor& visitor) {
@@ -324,6 +511,9 @@ void visit_fields(CompleteView view, Visitor& visitor) {
   visitor("trans_id", view.trans_id());
   visitor("app_id", view.app_id());
   visitor("payload", view.payload());
+}
+template <class Visitor>
+void visit_parts(CompleteView, Visitor&) {
 }
 template <class Visitor>
 void visit_fields(DemoData& value, Visitor& visitor) {
@@ -352,6 +542,9 @@ void visit_fields(DemoDataView view, Visitor& visitor) {
   visitor("my_rssi", view.my_rssi());
 }
 template <class Visitor>
+void visit_parts(DemoDataView, Visitor&) {
+}
+template <class Visitor>
 void visit_fields(TransducerUpdate& value, Visitor& visitor) {
   visitor("transducer", value.transducer);
   visitor("value", value.value);
@@ -360,6 +553,9 @@ template <class Visitor>
 void visit_fields(TransducerUpdateView view, Visitor& visitor) {
   visitor("transducer", view.transducer());
   visitor("value", view.value());
+}
+template <class Visitor>
+void visit_parts(TransducerUpdateView, Visitor&) {
 }
 template <class Visitor>
 void visit_fields(Updates& value, Visitor& visitor) {
@@ -371,6 +567,9 @@ void visit_fields(UpdatesView view, Visitor& visitor) {
   visitor("type", view.type());
   visitor("output_size", view.output_size());
   visitor("updates", view.updates());
+}
+template <class Visitor>
+void visit_parts(UpdatesView, Visitor&) {
 }
 template <class Visitor>
 void visit_fields(ReadUpdates& value, Visitor& visitor) {
@@ -385,12 +584,18 @@ void visit_fields(ReadUpdatesView view, Visitor& visitor) {
   visitor("transducers", view.transducers());
 }
 template <class Visitor>
+void visit_parts(ReadUpdatesView, Visitor&) {
+}
+template <class Visitor>
 void visit_fields(RssiBeacon& value, Visitor& visitor) {
   visitor("anchor_id", value.anchor_id);
 }
 template <class Visitor>
 void visit_fields(RssiBeaconView view, Visitor& visitor) {
   visitor("anchor_id", view.anchor_id());
+}
+template <class Visitor>
+void visit_parts(RssiBeaconView, Visitor&) {
 }
 template <class Visitor>
 void visit_fields(NetidCmd& value, Visitor& visitor) {
@@ -405,6 +610,9 @@ void visit_fields(NetidCmdView view, Visitor& visitor) {
   visitor("seq_num", view.seq_num());
 }
 template <class Visitor>
+void visit_parts(NetidCmdView, Visitor&) {
+}
+template <class Visitor>
 void visit_fields(BroadcastCmd& value, Visitor& visitor) {
   visitor("type", value.type);
   visitor("clock", value.clock);
@@ -415,6 +623,9 @@ void visit_fields(BroadcastCmdView view, Visitor& visitor) {
   visitor("type", view.type());
   visitor("clock", view.clock());
   visitor("seq_num", view.seq_num());
+}
+template <class Visitor>
+void visit_parts(BroadcastCmdView, Visitor&) {
 }
 template <class Visitor>
 void visit_fields(SynCreateCmd& value, Visitor& visitor) {
@@ -449,6 +660,9 @@ void visit_fields(SynCreateCmdView view, Visitor& visitor) {
   visitor("seq_num", view.seq_num());
 }
 template <class Visitor>
+void visit_parts(SynCreateCmdView, Visitor&) {
+}
+template <class Visitor>
 void visit_fields(LearningModuleCmd& value, Visitor& visitor) {
   visitor("type", value.type);
   visitor("net_id", value.net_id);
@@ -466,6 +680,9 @@ void visit_fields(LearningModuleCmdView view, Visitor& visitor) {
   visitor("cols", view.cols());
   visitor("matrix_size", view.matrix_size());
   visitor("weights", view.weights());
+}
+template <class Visitor>
+void visit_parts(LearningModuleCmdView, Visitor&) {
 }
 template <class Visitor>
 void visit_fields(LearningModuleFloatCmd& value, Visitor& visitor) {
@@ -487,6 +704,9 @@ void visit_fields(LearningModuleFloatCmdView view, Visitor& visitor) {
   visitor("weights", view.weights());
 }
 template <class Visitor>
+void visit_parts(LearningModuleFloatCmdView, Visitor&) {
+}
+template <class Visitor>
 void visit_fields(LearningNotification& value, Visitor& visitor) {
   visitor("type", value.type);
   visitor("seq_num", value.seq_num);
@@ -497,6 +717,9 @@ void visit_fields(LearningNotificationView view, Visitor& visitor) {
   visitor("type", view.type());
   visitor("seq_num", view.seq_num());
   visitor("ack", view.ack());
+}
+template <class Visitor>
+void visit_parts(LearningNotificationView, Visitor&) {
 }
 template <class Visitor>
 void visit_fields(LearningModuleDown& value, Visitor& visitor) {
@@ -512,6 +735,9 @@ void visit_fields(LearningModuleDownView view, Visitor& visitor) {
   visitor("weights", view.weights());
 }
 template <class Visitor>
+void visit_parts(LearningModuleDownView, Visitor&) {
+}
+template <class Visitor>
 void visit_fields(LearningOutput& value, Visitor& visitor) {
   visitor("type", value.type);
   visitor("output", value.output);
@@ -521,6 +747,9 @@ void visit_fields(LearningOutputView view, Visitor& visitor) {
   visitor("type", view.type());
   visitor("output_size", view.output_size());
   visitor("output", view.output());
+}
+template <class Visitor>
+void visit_parts(LearningOutputView, Visitor&) {
 }
 template <class Visitor>
 void visit_fields(NetCommand& value, Visitor& visitor) {
@@ -533,6 +762,9 @@ void visit_fields(NetCommandView view, Visitor& visitor) {
   visitor("src_island_addr", view.src_island_addr());
   visitor("src_mote_addr", view.src_mote_addr());
   visitor("type", view.type());
+}
+template <class Visitor>
+void visit_parts(NetCommandView, Visitor&) {
 }
 template <class Visitor>
 void visit_fields(NetData& value, Visitor& visitor) {
@@ -557,6 +789,9 @@ void visit_fields(NetDataView view, Visitor& visitor) {
   visitor("rssi", view.rssi());
 }
 template <class Visitor>
+void visit_parts(NetDataView, Visitor&) {
+}
+template <class Visitor>
 void visit_fields(Connless& value, Visitor& visitor) {
   visitor("msg_type", value.msg_type);
   visitor("island_addr", value.island_addr);
@@ -574,6 +809,9 @@ void visit_fields(ConnlessView view, Visitor& visitor) {
   visitor("seq_num", view.seq_num());
   visitor("nbytes", view.nbytes());
   visitor("payload", view.payload());
+}
+template <class Visitor>
+void visit_parts(ConnlessView, Visitor&) {
 }
 /// Calls visitor(name, ViewTag) for every structure of the spec.
 template <class Visitor>

@@ -61,11 +61,14 @@ struct AppMsgLayout {
   }
 };
 
+class AppMsgBuilder;
+
 /// A lens on the bytes of app_msg; copy it like a pointer. Somebody
 /// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class AppMsgView {
  public:
   using Value = AppMsg;
+  using Builder = AppMsgBuilder;
   static constexpr size_t kMinSizeBytes = 2;
   static constexpr size_t kMaxSizeBytes = 102;
   /// What the bytes of payload may hold.

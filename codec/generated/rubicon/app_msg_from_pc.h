@@ -64,11 +64,14 @@ struct AppMsgFromPcLayout {
   }
 };
 
+class AppMsgFromPcBuilder;
+
 /// A lens on the bytes of app_msg; copy it like a pointer. Somebody
 /// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class AppMsgFromPcView {
  public:
   using Value = AppMsgFromPc;
+  using Builder = AppMsgFromPcBuilder;
   static constexpr size_t kMinSizeBytes = 2;
   static constexpr size_t kMaxSizeBytes = 102;
   /// What the bytes of payload may hold.

@@ -43,11 +43,14 @@ struct BroadcastCmdLayout {
   }
 };
 
+class BroadcastCmdBuilder;
+
 /// A lens on the bytes of broadcast_cmd; copy it like a pointer. Somebody
 /// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class BroadcastCmdView {
  public:
   using Value = BroadcastCmd;
+  using Builder = BroadcastCmdBuilder;
   static constexpr size_t kMinSizeBytes = 5;
   static constexpr size_t kMaxSizeBytes = 5;
 

@@ -44,11 +44,14 @@ struct CommandLayout {
   }
 };
 
+class CommandBuilder;
+
 /// A lens on the bytes of command; copy it like a pointer. Somebody
 /// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class CommandView {
  public:
   using Value = Command;
+  using Builder = CommandBuilder;
   static constexpr size_t kMinSizeBytes = 5;
   static constexpr size_t kMaxSizeBytes = 5;
 

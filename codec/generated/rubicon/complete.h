@@ -75,11 +75,14 @@ struct CompleteLayout {
   }
 };
 
+class CompleteBuilder;
+
 /// A lens on the bytes of complete; copy it like a pointer. Somebody
 /// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class CompleteView {
  public:
   using Value = Complete;
+  using Builder = CompleteBuilder;
   static constexpr size_t kMinSizeBytes = 19;
   static constexpr size_t kMaxSizeBytes = 19;
 

@@ -37,11 +37,14 @@ struct ConfigLayout {
   }
 };
 
+class ConfigBuilder;
+
 /// A lens on the bytes of config; copy it like a pointer. Somebody
 /// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class ConfigView {
  public:
   using Value = Config;
+  using Builder = ConfigBuilder;
   static constexpr size_t kMinSizeBytes = 3;
   static constexpr size_t kMaxSizeBytes = 3;
 

@@ -71,11 +71,14 @@ struct ConnlessLayout {
   }
 };
 
+class ConnlessBuilder;
+
 /// A lens on the bytes of connless; copy it like a pointer. Somebody
 /// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class ConnlessView {
  public:
   using Value = Connless;
+  using Builder = ConnlessBuilder;
   static constexpr size_t kMinSizeBytes = 8;
   static constexpr size_t kMaxSizeBytes = 108;
 

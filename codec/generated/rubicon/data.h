@@ -53,11 +53,14 @@ struct DataLayout {
   }
 };
 
+class DataBuilder;
+
 /// A lens on the bytes of data; copy it like a pointer. Somebody
 /// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class DataView {
  public:
   using Value = Data;
+  using Builder = DataBuilder;
   static constexpr size_t kMinSizeBytes = 10;
   static constexpr size_t kMaxSizeBytes = 10;
 

@@ -44,11 +44,14 @@ struct DemoLayout {
   }
 };
 
+class DemoBuilder;
+
 /// A lens on the bytes of demo; copy it like a pointer. Somebody
 /// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class DemoView {
  public:
   using Value = Demo;
+  using Builder = DemoBuilder;
   static constexpr size_t kMinSizeBytes = 5;
   static constexpr size_t kMaxSizeBytes = 5;
 

@@ -83,11 +83,14 @@ struct DemoDataLayout {
   }
 };
 
+class DemoDataBuilder;
+
 /// A lens on the bytes of demo_data; copy it like a pointer. Somebody
 /// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class DemoDataView {
  public:
   using Value = DemoData;
+  using Builder = DemoDataBuilder;
   static constexpr size_t kMinSizeBytes = 19;
   static constexpr size_t kMaxSizeBytes = 19;
 

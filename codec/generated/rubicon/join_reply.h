@@ -49,11 +49,14 @@ struct JoinReplyLayout {
   }
 };
 
+class JoinReplyBuilder;
+
 /// A lens on the bytes of join_reply; copy it like a pointer. Somebody
 /// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class JoinReplyView {
  public:
   using Value = JoinReply;
+  using Builder = JoinReplyBuilder;
   static constexpr size_t kMinSizeBytes = 10;
   static constexpr size_t kMaxSizeBytes = 10;
 

@@ -38,11 +38,14 @@ struct JoinRequestLayout {
   }
 };
 
+class JoinRequestBuilder;
+
 /// A lens on the bytes of join_request; copy it like a pointer. Somebody
 /// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class JoinRequestView {
  public:
   using Value = JoinRequest;
+  using Builder = JoinRequestBuilder;
   static constexpr size_t kMinSizeBytes = 6;
   static constexpr size_t kMaxSizeBytes = 6;
 

@@ -70,11 +70,14 @@ struct LearningModuleCmdLayout {
   }
 };
 
+class LearningModuleCmdBuilder;
+
 /// A lens on the bytes of learning_module_cmd; copy it like a pointer. Somebody
 /// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class LearningModuleCmdView {
  public:
   using Value = LearningModuleCmd;
+  using Builder = LearningModuleCmdBuilder;
   static constexpr size_t kMinSizeBytes = 8;
   static constexpr size_t kMaxSizeBytes = 100;
 

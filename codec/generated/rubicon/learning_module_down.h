@@ -55,11 +55,14 @@ struct LearningModuleDownLayout {
   }
 };
 
+class LearningModuleDownBuilder;
+
 /// A lens on the bytes of learning_module_down; copy it like a pointer. Somebody
 /// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class LearningModuleDownView {
  public:
   using Value = LearningModuleDown;
+  using Builder = LearningModuleDownBuilder;
   static constexpr size_t kMinSizeBytes = 4;
   static constexpr size_t kMaxSizeBytes = 96;
 

@@ -75,11 +75,14 @@ struct LearningModuleFloatCmdLayout {
   }
 };
 
+class LearningModuleFloatCmdBuilder;
+
 /// A lens on the bytes of learning_module_float_cmd; copy it like a pointer. Somebody
 /// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class LearningModuleFloatCmdView {
  public:
   using Value = LearningModuleFloatCmd;
+  using Builder = LearningModuleFloatCmdBuilder;
   static constexpr size_t kMinSizeBytes = 8;
   static constexpr size_t kMaxSizeBytes = 100;
 

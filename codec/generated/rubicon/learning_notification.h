@@ -46,11 +46,14 @@ struct LearningNotificationLayout {
   }
 };
 
+class LearningNotificationBuilder;
+
 /// A lens on the bytes of learning_notification; copy it like a pointer. Somebody
 /// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class LearningNotificationView {
  public:
   using Value = LearningNotification;
+  using Builder = LearningNotificationBuilder;
   static constexpr size_t kMinSizeBytes = 4;
   static constexpr size_t kMaxSizeBytes = 4;
 

@@ -47,11 +47,14 @@ struct LearningOutputLayout {
   }
 };
 
+class LearningOutputBuilder;
+
 /// A lens on the bytes of learning_output; copy it like a pointer. Somebody
 /// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class LearningOutputView {
  public:
   using Value = LearningOutput;
+  using Builder = LearningOutputBuilder;
   static constexpr size_t kMinSizeBytes = 2;
   static constexpr size_t kMaxSizeBytes = 98;
 

@@ -46,11 +46,14 @@ struct MoteDescLayout {
   }
 };
 
+class MoteDescBuilder;
+
 /// A lens on the bytes of mote_desc; copy it like a pointer. Somebody
 /// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class MoteDescView {
  public:
   using Value = MoteDesc;
+  using Builder = MoteDescBuilder;
   static constexpr size_t kMinSizeBytes = 4;
   static constexpr size_t kMaxSizeBytes = 4;
 

@@ -44,11 +44,14 @@ struct NetCommandLayout {
   }
 };
 
+class NetCommandBuilder;
+
 /// A lens on the bytes of net_command; copy it like a pointer. Somebody
 /// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class NetCommandView {
  public:
   using Value = NetCommand;
+  using Builder = NetCommandBuilder;
   static constexpr size_t kMinSizeBytes = 4;
   static constexpr size_t kMaxSizeBytes = 4;
 

@@ -70,11 +70,14 @@ struct NetDataLayout {
   }
 };
 
+class NetDataBuilder;
+
 /// A lens on the bytes of net_data; copy it like a pointer. Somebody
 /// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class NetDataView {
  public:
   using Value = NetData;
+  using Builder = NetDataBuilder;
   static constexpr size_t kMinSizeBytes = 15;
   static constexpr size_t kMaxSizeBytes = 15;
 

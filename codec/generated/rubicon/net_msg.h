@@ -69,11 +69,14 @@ struct NetMsgLayout {
   }
 };
 
+class NetMsgBuilder;
+
 /// A lens on the bytes of net_msg; copy it like a pointer. Somebody
 /// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class NetMsgView {
  public:
   using Value = NetMsg;
+  using Builder = NetMsgBuilder;
   static constexpr size_t kMinSizeBytes = 14;
   static constexpr size_t kMaxSizeBytes = 114;
   /// What the bytes of payload may hold.

@@ -44,11 +44,14 @@ struct NetidCmdLayout {
   }
 };
 
+class NetidCmdBuilder;
+
 /// A lens on the bytes of netid_cmd; copy it like a pointer. Somebody
 /// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class NetidCmdView {
  public:
   using Value = NetidCmd;
+  using Builder = NetidCmdBuilder;
   static constexpr size_t kMinSizeBytes = 5;
   static constexpr size_t kMaxSizeBytes = 5;
 

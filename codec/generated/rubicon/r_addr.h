@@ -38,11 +38,14 @@ struct RAddrLayout {
   }
 };
 
+class RAddrBuilder;
+
 /// A lens on the bytes of r_addr; copy it like a pointer. Somebody
 /// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class RAddrView {
  public:
   using Value = RAddr;
+  using Builder = RAddrBuilder;
   static constexpr size_t kMinSizeBytes = 4;
   static constexpr size_t kMaxSizeBytes = 4;
 

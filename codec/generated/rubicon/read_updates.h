@@ -45,11 +45,14 @@ struct ReadUpdatesLayout {
   }
 };
 
+class ReadUpdatesBuilder;
+
 /// A lens on the bytes of read_updates; copy it like a pointer. Somebody
 /// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class ReadUpdatesView {
  public:
   using Value = ReadUpdates;
+  using Builder = ReadUpdatesBuilder;
   static constexpr size_t kMinSizeBytes = 5;
   static constexpr size_t kMaxSizeBytes = 5;
 

@@ -32,11 +32,14 @@ struct RssiBeaconLayout {
   }
 };
 
+class RssiBeaconBuilder;
+
 /// A lens on the bytes of rssi_beacon; copy it like a pointer. Somebody
 /// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class RssiBeaconView {
  public:
   using Value = RssiBeacon;
+  using Builder = RssiBeaconBuilder;
   static constexpr size_t kMinSizeBytes = 1;
   static constexpr size_t kMaxSizeBytes = 1;
 

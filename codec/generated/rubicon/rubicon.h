@@ -53,11 +53,14 @@ struct RubiconLayout {
   }
 };
 
+class RubiconBuilder;
+
 /// A lens on the bytes of rubicon; copy it like a pointer. Somebody
 /// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class RubiconView {
  public:
   using Value = Rubicon;
+  using Builder = RubiconBuilder;
   static constexpr size_t kMinSizeBytes = 8;
   static constexpr size_t kMaxSizeBytes = 122;
   /// What the bytes of payload may hold.

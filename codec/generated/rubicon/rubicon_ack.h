@@ -44,11 +44,14 @@ struct RubiconAckLayout {
   }
 };
 
+class RubiconAckBuilder;
+
 /// A lens on the bytes of rubicon_ack; copy it like a pointer. Somebody
 /// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class RubiconAckView {
  public:
   using Value = RubiconAck;
+  using Builder = RubiconAckBuilder;
   static constexpr size_t kMinSizeBytes = 4;
   static constexpr size_t kMaxSizeBytes = 4;
 

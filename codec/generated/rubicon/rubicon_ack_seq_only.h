@@ -32,11 +32,14 @@ struct RubiconAckSeqOnlyLayout {
   }
 };
 
+class RubiconAckSeqOnlyBuilder;
+
 /// A lens on the bytes of rubicon_ack_seq_only; copy it like a pointer. Somebody
 /// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class RubiconAckSeqOnlyView {
  public:
   using Value = RubiconAckSeqOnly;
+  using Builder = RubiconAckSeqOnlyBuilder;
   static constexpr size_t kMinSizeBytes = 2;
   static constexpr size_t kMaxSizeBytes = 2;
 

@@ -65,11 +65,14 @@ struct SerialDataLayout {
   }
 };
 
+class SerialDataBuilder;
+
 /// A lens on the bytes of serial_data; copy it like a pointer. Somebody
 /// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class SerialDataView {
  public:
   using Value = SerialData;
+  using Builder = SerialDataBuilder;
   static constexpr size_t kMinSizeBytes = 13;
   static constexpr size_t kMaxSizeBytes = 13;
 

@@ -65,11 +65,14 @@ struct SerialJoinedLayout {
   }
 };
 
+class SerialJoinedBuilder;
+
 /// A lens on the bytes of serial_joined; copy it like a pointer. Somebody
 /// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class SerialJoinedView {
  public:
   using Value = SerialJoined;
+  using Builder = SerialJoinedBuilder;
   static constexpr size_t kMinSizeBytes = 9;
   static constexpr size_t kMaxSizeBytes = 9;
 

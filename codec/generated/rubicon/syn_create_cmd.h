@@ -104,11 +104,14 @@ struct SynCreateCmdLayout {
   }
 };
 
+class SynCreateCmdBuilder;
+
 /// A lens on the bytes of syn_create_cmd; copy it like a pointer. Somebody
 /// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class SynCreateCmdView {
  public:
   using Value = SynCreateCmd;
+  using Builder = SynCreateCmdBuilder;
   static constexpr size_t kMinSizeBytes = 58;
   static constexpr size_t kMaxSizeBytes = 58;
 

@@ -38,11 +38,14 @@ struct SynapticDataLayout {
   }
 };
 
+class SynapticDataBuilder;
+
 /// A lens on the bytes of synaptic_data; copy it like a pointer. Somebody
 /// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class SynapticDataView {
  public:
   using Value = SynapticData;
+  using Builder = SynapticDataBuilder;
   static constexpr size_t kMinSizeBytes = 0;
   static constexpr size_t kMaxSizeBytes = 100;
 

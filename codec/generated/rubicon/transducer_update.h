@@ -38,11 +38,14 @@ struct TransducerUpdateLayout {
   }
 };
 
+class TransducerUpdateBuilder;
+
 /// A lens on the bytes of transducer_update; copy it like a pointer. Somebody
 /// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class TransducerUpdateView {
  public:
   using Value = TransducerUpdate;
+  using Builder = TransducerUpdateBuilder;
   static constexpr size_t kMinSizeBytes = 4;
   static constexpr size_t kMaxSizeBytes = 4;
 

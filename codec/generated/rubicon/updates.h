@@ -51,11 +51,14 @@ struct UpdatesLayout {
   }
 };
 
+class UpdatesBuilder;
+
 /// A lens on the bytes of updates; copy it like a pointer. Somebody
 /// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class UpdatesView {
  public:
   using Value = Updates;
+  using Builder = UpdatesBuilder;
   static constexpr size_t kMinSizeBytes = 2;
   static constexpr size_t kMaxSizeBytes = 98;
 

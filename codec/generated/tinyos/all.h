@@ -14,7 +14,8 @@
 namespace rubric {
 namespace tinyos {
 
-/// The fields of a value or of a view in order: visitor(name, field).
+/// visit_fields: the fields of a value or of a view in order: visitor(name, field).
+/// visit_parts: the messages that a view reads its bytes as: visitor(bytes, view of the message).
 template <class Visitor>
 void visit_fields(SerialFrame& value, Visitor& visitor) {
   visitor("kind", value.kind);
@@ -28,6 +29,9 @@ void visit_fields(SerialFrameView view, Visitor& visitor) {
   visitor("packet", view.packet());
 }
 template <class Visitor>
+void visit_parts(SerialFrameView, Visitor&) {
+}
+template <class Visitor>
 void visit_fields(SfPacket& value, Visitor& visitor) {
   visitor("packet", value.packet);
 }
@@ -35,6 +39,9 @@ template <class Visitor>
 void visit_fields(SfPacketView view, Visitor& visitor) {
   visitor("length", view.length());
   visitor("packet", view.packet());
+}
+template <class Visitor>
+void visit_parts(SfPacketView, Visitor&) {
 }
 template <class Visitor>
 void visit_fields(AmHeader& value, Visitor& visitor) {
@@ -55,6 +62,9 @@ void visit_fields(AmHeaderView view, Visitor& visitor) {
   visitor("type", view.type());
 }
 template <class Visitor>
+void visit_parts(AmHeaderView, Visitor&) {
+}
+template <class Visitor>
 void visit_fields(MacHeader& value, Visitor& visitor) {
   visitor("fcf", value.fcf);
   visitor("dsn", value.dsn);
@@ -71,6 +81,9 @@ void visit_fields(MacHeaderView view, Visitor& visitor) {
   visitor("src", view.src());
 }
 template <class Visitor>
+void visit_parts(MacHeaderView, Visitor&) {
+}
+template <class Visitor>
 void visit_fields(MacAck& value, Visitor& visitor) {
   visitor("fcf", value.fcf);
   visitor("dsn", value.dsn);
@@ -79,6 +92,9 @@ template <class Visitor>
 void visit_fields(MacAckView view, Visitor& visitor) {
   visitor("fcf", view.fcf());
   visitor("dsn", view.dsn());
+}
+template <class Visitor>
+void visit_parts(MacAckView, Visitor&) {
 }
 /// Calls visitor(name, ViewTag) for every structure of the spec.
 template <class Visitor>

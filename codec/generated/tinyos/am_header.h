@@ -61,11 +61,14 @@ struct AmHeaderLayout {
   }
 };
 
+class AmHeaderBuilder;
+
 /// A lens on the bytes of am_header; copy it like a pointer. Somebody
 /// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class AmHeaderView {
  public:
   using Value = AmHeader;
+  using Builder = AmHeaderBuilder;
   static constexpr size_t kMinSizeBytes = 8;
   static constexpr size_t kMaxSizeBytes = 8;
 

@@ -36,11 +36,14 @@ struct MacAckLayout {
   }
 };
 
+class MacAckBuilder;
+
 /// A lens on the bytes of mac_ack; copy it like a pointer. Somebody
 /// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class MacAckView {
  public:
   using Value = MacAck;
+  using Builder = MacAckBuilder;
   static constexpr size_t kMinSizeBytes = 3;
   static constexpr size_t kMaxSizeBytes = 3;
 

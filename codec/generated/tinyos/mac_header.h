@@ -54,11 +54,14 @@ struct MacHeaderLayout {
   }
 };
 
+class MacHeaderBuilder;
+
 /// A lens on the bytes of mac_header; copy it like a pointer. Somebody
 /// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class MacHeaderView {
  public:
   using Value = MacHeader;
+  using Builder = MacHeaderBuilder;
   static constexpr size_t kMinSizeBytes = 9;
   static constexpr size_t kMaxSizeBytes = 9;
 

@@ -51,11 +51,14 @@ struct SerialFrameLayout {
   }
 };
 
+class SerialFrameBuilder;
+
 /// A lens on the bytes of serial_frame; copy it like a pointer. Somebody
 /// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class SerialFrameView {
  public:
   using Value = SerialFrame;
+  using Builder = SerialFrameBuilder;
   static constexpr size_t kMinSizeBytes = 1;
   static constexpr size_t kMaxSizeBytes = SIZE_MAX;
 

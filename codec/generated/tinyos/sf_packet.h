@@ -41,11 +41,14 @@ struct SfPacketLayout {
   }
 };
 
+class SfPacketBuilder;
+
 /// A lens on the bytes of sf_packet; copy it like a pointer. Somebody
 /// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class SfPacketView {
  public:
   using Value = SfPacket;
+  using Builder = SfPacketBuilder;
   static constexpr size_t kMinSizeBytes = 2;
   static constexpr size_t kMaxSizeBytes = 256;
 

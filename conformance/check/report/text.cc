@@ -230,7 +230,7 @@ class TextReport {
         out_ += fmt::format("{}{}...\n", kDeep, message.substr(0, end));
       }
     }
-    out_ += '\n' + chart(*scene_, rows, at, kIndent.size() + 2, options_.width);
+    out_ += '\n' + chart(*scene_, rows, at, text::kIndent.size() + 2, options_.width);
   }
 
   void replay(const Finding& finding) {
