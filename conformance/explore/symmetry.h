@@ -16,9 +16,9 @@
 // is made of steps of nodes, and of the addresses of frames, which it compares too, the network's
 // states have the symmetry if it returns true.
 //
-// With k! motes' and sinks' permutations in all, a state s whose orbit is smaller is one that some
-// of them leave as it is: the orbit has |G| / |those| states. The search adds these up, and the sum
-// is the number of states that there are without the reduction; a test compares.
+// A state that some permutations leave as it is has a smaller orbit: as many states as there are
+// permutations, divided by those. The search adds these sizes up; the sum is the number of states
+// that there are without the reduction, and a test compares.
 #pragma once
 
 #include <array>
