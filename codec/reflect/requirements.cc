@@ -5,6 +5,7 @@
 #include <bit>
 #include <cctype>
 #include <iterator>
+#include <utility>
 
 #include "codec/generated/requirements_table.h"
 
@@ -31,22 +32,37 @@ constexpr std::array<Slot, kSlots> kTable = [] {
   return out;
 }();
 
+std::vector<Requirement>& others() {
+  static std::vector<Requirement> rules;
+  return rules;
+}
+
 }  // namespace
 
-std::span<const Requirement> requirements() { return kRequirements; }
+std::span<const Requirement> requirements() {
+  if (!others().empty()) return others();
+  return kRequirements;
+}
+
+void use_requirements(std::vector<Requirement> rules) { others() = std::move(rules); }
 
 std::size_t requirement_index(ReqId id) {
+  if (!others().empty()) {
+    const auto found = std::find_if(others().begin(), others().end(),
+                                    [&](const Requirement& one) { return one.number() == id; });
+    return found == others().end() ? 0 : static_cast<std::size_t>(found - others().begin());
+  }
   std::size_t at = static_cast<std::size_t>(id) % kSlots;
   while (kTable[at].number != id && kTable[at].number != ReqId::kNone) at = (at + 1) % kSlots;
   return kTable[at].index;
 }
 
-const Requirement& requirement(ReqId id) { return kRequirements[requirement_index(id)]; }
+const Requirement& requirement(ReqId id) { return requirements()[requirement_index(id)]; }
 
 ReqId find_requirement(std::string_view id) {
   const auto upper = [](char c) { return std::toupper(static_cast<unsigned char>(c)); };
   const auto same = [&](char a, char b) { return upper(a) == upper(b); };
-  for (const Requirement& one : kRequirements) {
+  for (const Requirement& one : requirements()) {
     const std::string_view known = one.id;
     if (std::equal(id.begin(), id.end(), known.begin(), known.end(), same)) return one.number();
   }

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "codec/reflect/schema.h"
 
@@ -12,6 +13,8 @@ namespace rubric::reflect {
 
 /// All rules, in the order of spec/requirements.yaml; the first entry stands for none.
 std::span<const Requirement> requirements();
+/// Sets the rules of another protocol in their place, the first for none; before there are threads.
+void use_requirements(std::vector<Requirement> rules);
 /// The texts of a rule. All are empty for kNone and for a number that no rule has.
 const Requirement& requirement(ReqId id);
 /// The rule's place in requirements(); 0 for kNone and for a number that no rule has.

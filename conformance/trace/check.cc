@@ -13,6 +13,7 @@
 #include "conformance/trace/encode.h"
 #include "conformance/trace/match.h"
 #include "conformance/trace/print.h"
+#include "conformance/trace/protocol.h"
 #include "conformance/trace/trace.h"
 #include "conformance/trace/value_text.h"
 
@@ -241,7 +242,7 @@ class MessageCheck {
   // Reports missing fields; messages of an application have one form, so these are known.
   void missing(const std::vector<FieldValue>& whole, const Shape& shape) {
     if (!shape.app || line_.message.open || is_fault(line_.op)) return;
-    for (const AppField& field : shape.app->all()) {
+    for (const AppField& field : shape.app->fields) {
       if (field.derived) continue;
       const bool there = std::any_of(whole.begin(), whole.end(), [&](const FieldValue& one) {
         return one.path.substr(0, one.path.find('.')) == field.name;
@@ -380,15 +381,19 @@ class FileCheck {
   }
 
   void check_node(const NodeHeader& node, Place place) {
-    const bool base = node.role == Role::kBaseStation;
-    const bool mote = node.role == Role::kMote;
-    if (!node.id && !base) report_(place, "node " + quoted(node.name) + " needs id=");
-    if (!node.island && !mote) report_(place, "node " + quoted(node.name) + " needs island=");
-    if (node.island && mote) {
-      report_(place, "a mote has no island of its own: " + quoted(node.name) + " joins one");
+    const RoleInfo& role = role_info(node.role);
+    std::string name = "a " + role.name;
+    std::replace(name.begin(), name.end(), '_', ' ');
+    if (!node.id && role.has_id) report_(place, "node " + quoted(node.name) + " needs id=");
+    if (!node.island && role.has_island) {
+      report_(place, "node " + quoted(node.name) + " needs island=");
     }
-    if (node.id && base) report_(place, "a base station has no TinyOS id");
-    if (find(node.stated, ParameterId::kChannels) && base) {
+    if (node.island && !role.has_island) {
+      report_(place, name + " has no island of its own: " + quoted(node.name) + " joins one");
+    }
+    if (node.id && !role.has_id) report_(place, name + " has no TinyOS id");
+    if (protocol().has_machine && node.role == Role::kBaseStation &&
+        find(node.stated, ParameterId::kChannels)) {
       report_(place, "a base station has no synaptic channels");
     }
   }
@@ -496,10 +501,11 @@ class FileCheck {
     }
     const NodeHeader* node = scope.node(line.node);
     if (!node) return report_(line.place, "no %node " + quoted(line.node));
+    const RoleInfo& role = role_info(node->role);
     const bool has = link == LinkKind::kApp || link == LinkKind::kPower || link == LinkKind::kAny ||
-                     (link == LinkKind::kRadio && node->role != Role::kBaseStation) ||
-                     (link == LinkKind::kSerial && node->role != Role::kMote) ||
-                     (link == LinkKind::kPeis && node->role == Role::kBaseStation);
+                     (link == LinkKind::kRadio && role.radio) ||
+                     (link == LinkKind::kSerial && role.serial) ||
+                     (link == LinkKind::kPeis && role.peis);
     if (!has) {
       report_(line.place, "a " + std::string(role_text(node->role)) + " is not on " +
                               quoted(line.link) + ", which is " + std::string(link_text(link)));

@@ -233,22 +233,23 @@ Concrete decode(const AmFrame& frame, LinkKind link) {
 
 Concrete decode_raw(const AmFrame& frame) {
   const std::string payload(text_of({frame.payload.data(), frame.payload.size()}));
+  const std::vector<AppField>& fields = Schema::get().find(kFrameName)->app->fields;
   Concrete out;
   out.name = kFrameName;
   out.frame = frame;
   Leaf type;
   type.path = "type";
-  type.domain = Domain::of(app::kFrame[0]);
+  type.domain = Domain::of(fields[0]);
   type.number = frame.type;
   Leaf bytes;
   bytes.path = "payload";
-  bytes.domain = Domain::of(app::kFrame[1]);
+  bytes.domain = Domain::of(fields[1]);
   bytes.bytes = payload;
   out.message =
       Message::named(kFrameName).with("type", type.show()).with("payload", Value::bytes(payload));
   Leaf size;
   size.path = "size";
-  size.domain = Domain::of(app::kFrame[2]);
+  size.domain = Domain::of(fields[2]);
   size.number = static_cast<std::int64_t>(frame.payload.size());
   out.leaves.push_back(std::move(type));
   out.leaves.push_back(std::move(bytes));
@@ -274,7 +275,7 @@ void put_leaf(const std::string& path, const Domain& domain, const Value& value,
 void put_pair(const AppField& field, const Value& value, Place place, Concrete& out) {
   const bool address = field.kind == AppKind::kAddress;
   const Value::Kind wanted = address ? Value::Kind::kAddress : Value::Kind::kChannel;
-  const std::string path = field.name;
+  const std::string& path = field.name;
   if (!value.is(wanted)) {
     throw TraceError(
         place, path + ": expected " + (address ? "an address, as 11:5" : "a channel, as 2->1"));
@@ -306,7 +307,7 @@ Concrete concrete(const Message& message, const Bindings& bindings) {
   if (!shape || !shape->app) {
     throw TraceError(message.place, "'" + message.name + "' is not a message of an application");
   }
-  if (message.form != Message::Form::kFields && shape->app->field_count > 0) {
+  if (message.form != Message::Form::kFields && !shape->app->fields.empty()) {
     throw TraceError(message.place, "'" + message.name + "' needs its fields");
   }
   Concrete out;
@@ -314,13 +315,13 @@ Concrete concrete(const Message& message, const Bindings& bindings) {
   if (message.form == Message::Form::kFields) out.message = Message::named(message.name);
   out.message.name = message.name;
   const std::vector<FieldValue> fields = with_paths(message, *shape);
-  for (const AppField& field : shape->app->all()) {
+  for (const AppField& field : shape->app->fields) {
     const auto given = std::find_if(fields.begin(), fields.end(),
                                     [&](const FieldValue& one) { return one.path == field.name; });
     if (given == fields.end() && field.derived) continue;
     if (given == fields.end() && !message.open) {
       throw TraceError(message.place,
-                       "field " + std::string(field.name) + " of " + message.name + " is missing");
+                       "field " + field.name + " of " + message.name + " is missing");
     }
     const bool pair = field.kind == AppKind::kAddress || field.kind == AppKind::kChannel;
     const Place place = given == fields.end() ? message.place : given->place;

@@ -83,7 +83,7 @@ Concrete decode(const AmFrame& frame, LinkKind link);
 /// Decodes as `am(type payload)` in any case.
 Concrete decode_raw(const AmFrame& frame);
 
-/// Makes a call, an event or another message of app_messages.h. Variables take their values; `...`
+/// Makes a call, an event or another message that is no frame. Variables take their values; `...`
 /// leaves zeros; `!x` becomes another value. Throws TraceError if a field is missing or ambiguous.
 Concrete concrete(const Message& message, const Bindings& bindings = {});
 

@@ -11,6 +11,7 @@
 #include "codec/reflect/schema.h"
 #include "codec/reflect/value.h"
 #include "conformance/trace/match.h"
+#include "conformance/trace/protocol.h"
 #include "conformance/trace/schema.h"
 #include "conformance/trace/value_text.h"
 
@@ -472,7 +473,9 @@ std::uint16_t am_number(const Value& value, const Bindings& bindings, Place plac
 
 std::uint16_t destination(const Line& line, const Scope& scope) {
   const NodeHeader* node = scope.node(line.node);
-  if (line.op != Op::kGiven || !node || line.message.name == "join_request") return kAmAll;
+  if (line.op != Op::kGiven || !node || is_among(protocol().broadcast, line.message.name)) {
+    return kAmAll;
+  }
   if (scope.link(line.link) == LinkKind::kPeis) return node->island.value_or(kAmAll);
   return node->id.value_or(kAmAll);
 }
@@ -492,11 +495,13 @@ std::uint16_t source(const Line& line, const Scope& scope, const AmFrame& frame)
     const auto known = [&](const NodeHeader& one) { return one.id == src->second; };
     if (std::any_of(scope.nodes.begin(), scope.nodes.end(), known)) return src->second;
   }
-  // Sinks hear motes; a mote's other frames come from its sink.
+  // Sinks hear motes; a mote's other frames come from its sink. Of other protocols nothing is
+  // known.
   const NodeHeader* hears = line.op == Op::kGiven ? scope.node(line.node) : nullptr;
   std::optional<std::uint16_t> found;
   for (const NodeHeader& one : scope.nodes) {
-    const bool fits = !hears || (hears->role == Role::kSink) == (one.role == Role::kMote);
+    const bool fits = !hears || !protocol().has_machine ||
+                      (hears->role == Role::kSink) == (one.role == Role::kMote);
     if (!fits || !one.id || one.name == line.node) continue;
     if (found && found != one.id) {
       throw TraceError(line.place,
@@ -521,9 +526,10 @@ AmFrame frame_of(const Line& line, const Scope& scope, const Bindings& bindings)
     return frame;
   }
   frame = encode(line.message, bindings);
-  // On a serial line a net_msg has its full length (decision 140).
   const bool serial = scope.link(line.link) == LinkKind::kSerial;
-  if (serial && line.message.name == "net_msg") frame.payload.resize(kPayloadMax);
+  if (serial && is_among(protocol().whole_on_serial, line.message.name)) {
+    frame.payload.resize(kPayloadMax);
+  }
   frame.src =
       line.am ? am_number(line.am->source, bindings, line.place) : source(line, scope, frame);
   frame.dest = line.am ? am_number(line.am->dest, bindings, line.place) : destination(line, scope);

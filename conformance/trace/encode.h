@@ -13,10 +13,11 @@ namespace rubric::trace {
 AmFrame encode(const Message& message, const Bindings& bindings = {});
 
 /// Returns the frame of a line: its exact bytes if it has any, else its message with the addresses
-/// of `am=`. Without `am=` a frame is for the node that receives it, a join_request for all; its
-/// source is the devid of `src` if a node has that, else the one id that nodes of the other role
-/// have. Over PEIS islands replace ids. On a serial line a net_msg has 114 bytes, zeros at the
-/// end. Throws TraceError, also if the source is ambiguous.
+/// of `am=`. Without `am=` a frame is for the node that receives it, or for all where the protocol
+/// says so of its message; its source is the devid of `src` if a node has that, else the one id
+/// that nodes of the other role have. Over PEIS islands replace ids. On a serial line the messages
+/// of which the protocol says so have 114 bytes, zeros at the end. Throws TraceError, also if the
+/// source is ambiguous.
 AmFrame frame_of(const Line& line, const Scope& scope, const Bindings& bindings = {});
 
 /// Checks that this pattern allows a message: variables, wildcards and ranges match any value that

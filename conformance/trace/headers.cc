@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "conformance/trace/protocol.h"
+
 namespace rubric::trace {
 namespace {
 
@@ -59,6 +61,7 @@ std::string contradiction(const Case& one, const NodeHeader& node, const Stated&
   if (const std::int64_t* const said = find(node.stated, stated.id)) {
     return contradiction({stated.id, *said, *said}, stated);
   }
+  if (!protocol().has_machine) return {};
   std::int64_t needed = 0;
   if (stated.id == ParameterId::kChannels) {
     needed = std::max(channels_created(one, node.name, "create_out"),
@@ -95,7 +98,7 @@ std::string state(File& file, Case& one, const Statement& statement) {
       if (wrong.empty()) wrong = contradiction(one, *node, each, statement);
     }
     node->stated = joined(std::move(node->stated), statement);
-    if (node->role == Role::kBaseStation) {  // It has no channels.
+    if (protocol().has_machine && node->role == Role::kBaseStation) {  // It has no channels.
       std::erase_if(node->stated, [](const Stated& s) { return s.id == ParameterId::kChannels; });
     }
   }

@@ -354,11 +354,12 @@ FieldValue with_path(const FieldValue& field, const Shape& shape, std::size_t& p
       throw TraceError(field.place, "fields of " + shape.name + " need their names: '" +
                                         value_text(field.value) + "'");
     }
-    if (position >= shape.app->field_count) {
+    const std::vector<AppField>& fields = shape.app->fields;
+    if (position >= fields.size()) {
       throw TraceError(field.place,
-                       shape.name + " has " + std::to_string(shape.app->field_count) + " fields");
+                       shape.name + " has " + std::to_string(fields.size()) + " fields");
     }
-    whole.path = shape.app->fields[position++].name;
+    whole.path = fields[position++].name;
     return whole;
   }
   std::vector<std::string> candidates;

@@ -1,49 +1,18 @@
 #include "conformance/trace/parameters.h"
 
 #include <algorithm>
-#include <array>
 
+#include "conformance/trace/protocol.h"
 #include "conformance/trace/value_text.h"
 
 namespace rubric::trace {
-namespace {
 
-constexpr std::int64_t kTicksMax = 0xFFFF;
-constexpr std::int64_t kDayTicks = 24 * 60 * 60 * 1024;
+std::span<const Parameter> parameters() { return protocol().parameters; }
 
-// Decisions of spec/decisions, less their 0.
-constexpr std::array<Parameter, 11> kParameters{{
-    {ParameterId::kResponse, "response", "ticks", 1, 1500, 125,
-     "How long a reply, an ack or a forward may take."},
-    {ParameterId::kJoinPeriod, "join_period", "ticks", 1, kTicksMax, 133,
-     "From one join_request to the next."},
-    {ParameterId::kJoinRequests, "join_requests", "requests", 1, 255, 101,
-     "join_requests of one joinIsland call, at most."},
-    {ParameterId::kAckJoins, "ack_joins", "frames", 1, 20, 102,
-     "ack_joins at most, while the link layer confirms none."},
-    {ParameterId::kAckTimeout, "ack_timeout", "ticks", 1, kTicksMax, 110,
-     "How long a reliable message awaits its ack."},
-    {ParameterId::kChannelAccess, "channel_access", "ticks", 0, 100, 128,
-     "How long the radio may wait for the channel, so how much shorter a timer may look."},
-    {ParameterId::kMembers, "members", "motes", 1, 20, 107, "Members that a sink lists."},
-    {ParameterId::kChannels, "channels", "channels", 1, 8, 129,
-     "Synaptic channels of each direction."},
-    {ParameterId::kSynapticPeriod, "synaptic_period", "ticks", 1, kTicksMax, 133,
-     "Period of the synaptic clock until set_time_step."},
-    {ParameterId::kSynapticPhase, "synaptic_phase", "ticks", 0, 255, 121,
-     "A mote's synaptic clock starts (devid - 1) times this late."},
-    {ParameterId::kGoneAfter, "gone_after", "ticks", 1, kDayTicks, 124,
-     "Silence after which a sink or base station calls a mote gone; unstated: never."},
-}};
-
-}  // namespace
-
-std::span<const Parameter> parameters() { return kParameters; }
-
-const Parameter& parameter(ParameterId id) { return kParameters[static_cast<std::size_t>(id)]; }
+const Parameter& parameter(ParameterId id) { return parameters()[static_cast<std::size_t>(id)]; }
 
 const Parameter* find_parameter(std::string_view name) {
-  for (const Parameter& one : kParameters) {
+  for (const Parameter& one : parameters()) {
     if (name == one.name) return &one;
   }
   return nullptr;
@@ -51,7 +20,7 @@ const Parameter* find_parameter(std::string_view name) {
 
 std::string parameter_names() {
   std::string out;
-  for (const Parameter& one : kParameters) {
+  for (const Parameter& one : parameters()) {
     if (!out.empty()) out += ", ";
     out += one.name;
   }

@@ -1,5 +1,5 @@
 // The parameters that an implementation states of itself (its IXIT): one list for traces, rct/1,
-// `rubric test --state` and `rubric check --state`. Their defaults are those of the profile.
+// `rubric test --state` and `rubric check --state`. It is the protocol's.
 #pragma once
 
 #include <cstdint>
@@ -10,6 +10,7 @@
 
 namespace rubric::trace {
 
+/// RUBICON's. Another protocol's have the numbers of their places in its list.
 enum class ParameterId : std::uint8_t {
   kResponse,
   kJoinPeriod,
@@ -25,13 +26,14 @@ enum class ParameterId : std::uint8_t {
 };
 
 struct Parameter {
-  ParameterId id;
-  const char* name;  ///< `ack_timeout`
-  const char* unit;  ///< "ticks", or what is counted.
-  std::int64_t min;
-  std::int64_t max;
-  int decision;     ///< The number of the decision that lets an implementation state it.
-  const char* doc;  ///< A sentence.
+  ParameterId id = ParameterId::kResponse;
+  std::string name;  ///< `ack_timeout`
+  std::string unit;  ///< "ticks", or what is counted.
+  std::int64_t min = 0;
+  std::int64_t max = 0;
+  std::int64_t unstated = 0;  ///< Of nodes that state none, where no profile says it.
+  int decision = 0;           ///< The decision that lets an implementation state it; 0: none.
+  std::string doc;            ///< A sentence.
 };
 
 /// In the order of their ids.

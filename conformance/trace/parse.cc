@@ -1,10 +1,12 @@
 #include "conformance/trace/parse.h"
 
 #include <algorithm>
+#include <optional>
 #include <vector>
 
 #include "conformance/trace/check.h"
 #include "conformance/trace/parse_line.h"
+#include "conformance/trace/protocol.h"
 #include "conformance/trace/scanner.h"
 #include "conformance/trace/trace.h"
 #include "conformance/trace/value_text.h"
@@ -45,13 +47,11 @@ NodeHeader parse_node(Scanner& in) {
   if (!is_dotted_name(word)) in.fail_at(word, "expected a node's name");
   node.name = word;
   word = header_word(in);
-  bool known = false;
-  for (const Role role : {Role::kMote, Role::kSink, Role::kBaseStation}) {
-    if (word != role_text(role)) continue;
-    node.role = role;
-    known = true;
+  const std::optional<Role> role = find_role(word);
+  if (!role) {
+    in.fail_at(word, "expected " + alternatives(role_names()) + ", given " + quoted(word));
   }
-  if (!known) in.fail_at(word, "expected mote, sink or base_station, given " + quoted(word));
+  node.role = *role;
   while (!(word = header_word(in)).empty()) {
     if (word == "iut" && !node.iut) {
       node.iut = true;
@@ -108,8 +108,10 @@ void parse_what(Scanner& in, Header& header) {
     header.what = VersionHeader{1};
   } else if (keyword == "%profile") {
     const std::string_view word = header_word(in);
-    if (word != "paper" && word != "deployed") {
-      in.fail_at(word, "expected paper or deployed, given " + quoted(word));
+    const std::vector<std::string>& known = protocol().profiles;
+    if (known.empty()) in.fail_at(keyword, protocol().name + " has no profiles");
+    if (!is_among(known, word)) {
+      in.fail_at(word, "expected " + alternatives(known) + ", given " + quoted(word));
     }
     header.what = ProfileHeader{std::string(word)};
   } else if (keyword == "%tick") {

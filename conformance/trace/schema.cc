@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "codec/generated/rubicon/tables.h"
 #include "codec/reflect/decode.h"
 #include "codec/reflect/encode.h"
 #include "codec/reflect/registry.h"
@@ -12,9 +13,6 @@ namespace {
 
 using reflect::Field;
 using reflect::Type;
-
-// Over PEIS only messages of the network level travel.
-constexpr std::string_view kPeisMessage = "net_msg";
 
 bool reads(const reflect::Expr& expr, std::int32_t offset) {
   for (int i = 0; i < expr.count; ++i) {
@@ -52,7 +50,7 @@ class Walk {
   }
 
   void app(const AppMessage& message) {
-    for (const AppField& one : message.all()) {
+    for (const AppField& one : message.fields) {
       const std::size_t size = push(one.name);
       if (one.kind == AppKind::kAddress) {
         add({Slot::Kind::kAddress, {}});
@@ -287,8 +285,7 @@ const Schema& Schema::get() {
 }
 
 Schema::Schema() {
-  const reflect::Protocol& protocol = rubicon::tables::kProtocol;
-  for (const AppMessage& message : kAppMessages) {
+  for (const AppMessage& message : protocol().messages) {
     Shape& shape = shapes_[message.name];
     shape.name = message.name;
     shape.app = &message;
@@ -297,13 +294,12 @@ Schema::Schema() {
     shape.serial = shape.peis = shape.radio && message.what != AppWhat::kRadio;
     Walk(shape).app(message);
   }
-  add_carrier(protocol, "radio_i", &Shape::radio);
-  add_carrier(protocol, "serial", &Shape::serial);
+  add_carrier(*protocol().wire, "radio_i", &Shape::radio);
+  add_carrier(*protocol().wire, "serial", &Shape::serial);
 }
 
-void Schema::add_carrier(const reflect::Protocol& protocol, const char* carrier,
-                         bool Shape::*travels) {
-  const Type* type = reflect::find_carrier(protocol, carrier);
+void Schema::add_carrier(const reflect::Protocol& wire, const char* carrier, bool Shape::*travels) {
+  const Type* type = reflect::find_carrier(wire, carrier);
   if (!type || type->field_count == 0) return;
   const reflect::Switch* choice = type->fields[type->field_count - 1].choice;
   if (!choice) return;
@@ -316,7 +312,7 @@ void Schema::add_carrier(const reflect::Protocol& protocol, const char* carrier,
     shape.name = message->name;
     shape.type = message;
     shape.am_type = static_cast<std::uint8_t>(choice->cases[i].key);
-    shape.peis = shape.name == kPeisMessage;
+    shape.peis = is_among(protocol().on_peis, shape.name);
     Walk(shape).type(*message);
   }
 }
@@ -329,7 +325,7 @@ const Shape* Schema::find(std::string_view name) const {
 const Type* Schema::payload_type(LinkKind link, std::uint8_t am_type) const {
   const reflect::Switch* choice = link == LinkKind::kSerial ? serial_ : radio_;
   const Type* type = choice ? reflect::choose(*choice, am_type) : nullptr;
-  if (type && link == LinkKind::kPeis && type->name != kPeisMessage) return nullptr;
+  if (type && link == LinkKind::kPeis && !is_among(protocol().on_peis, type->name)) return nullptr;
   return type;
 }
 

@@ -1,5 +1,5 @@
-// The messages that a trace can name, and their fields: the codec's tables and those of
-// app_messages.h, looked up by name and path.
+// The messages that a trace can name, and their fields: the tables of the wire spec and of
+// protocol.h, looked up by name and path.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "codec/reflect/schema.h"
-#include "conformance/trace/app_messages.h"
+#include "conformance/trace/protocol.h"
 #include "conformance/trace/trace.h"
 
 namespace rubric::trace {
@@ -54,7 +54,7 @@ struct Shape {
 
   std::string name;
   const reflect::Type* type = nullptr;  ///< In the wire spec, or null.
-  const AppMessage* app = nullptr;      ///< In app_messages.h, or null.
+  const AppMessage* app = nullptr;      ///< Else; or null.
   bool radio = false;                   ///< The links on which it travels.
   bool serial = false;
   bool peis = false;
@@ -75,7 +75,7 @@ struct Shape {
 
 class Schema {
  public:
-  /// Returns the schema of this build's protocol.
+  /// Returns the schema of the protocol in use.
   static const Schema& get();
 
   /// Returns the shape of this name, or null.
@@ -86,7 +86,7 @@ class Schema {
 
  private:
   Schema();
-  void add_carrier(const reflect::Protocol& protocol, const char* carrier, bool Shape::*travels);
+  void add_carrier(const reflect::Protocol& wire, const char* carrier, bool Shape::*travels);
 
   std::unordered_map<std::string, Shape> shapes_;
   const reflect::Switch* radio_ = nullptr;

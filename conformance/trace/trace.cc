@@ -1,5 +1,6 @@
 #include "conformance/trace/trace.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <iterator>
@@ -8,6 +9,7 @@
 #include "codec/reflect/am_frames.h"
 #include "codec/reflect/requirements.h"
 #include "codec/runtime/bytes.h"
+#include "conformance/trace/protocol.h"
 
 namespace rubric::trace {
 namespace {
@@ -167,13 +169,16 @@ std::string_view op_text(Op op) {
   return {};
 }
 
-std::string_view role_text(Role role) {
-  switch (role) {
-    case Role::kMote: return "mote";
-    case Role::kSink: return "sink";
-    case Role::kBaseStation: return "base_station";
-  }
-  return {};
+std::string_view role_text(Role role) { return role_info(role).name; }
+
+const RoleInfo& role_info(Role role) { return protocol().roles.at(static_cast<std::size_t>(role)); }
+
+std::optional<Role> find_role(std::string_view name) {
+  const std::vector<RoleInfo>& roles = protocol().roles;
+  const auto found = std::find_if(roles.begin(), roles.end(),
+                                  [&](const RoleInfo& one) { return one.name == name; });
+  if (found == roles.end()) return std::nullopt;
+  return static_cast<Role>(found - roles.begin());
 }
 
 std::string_view tick_text(Tick tick) {
@@ -212,7 +217,7 @@ std::vector<const Line*> Case::lines() const {
 File File::begin(std::string_view profile, Tick tick) {
   File file;
   file.header({VersionHeader{}, {}, {}});
-  file.header({ProfileHeader{std::string(profile)}, {}, {}});
+  if (!profile.empty()) file.header({ProfileHeader{std::string(profile)}, {}, {}});
   if (tick != Tick::kBinaryMs) file.header({TickHeader{tick}, {}, {}});
   return file;
 }
@@ -260,6 +265,7 @@ void apply(const std::vector<Item>& items, Scope& scope) {
 
 Scope scope_of(const File& file, const Case& one) {
   Scope scope;
+  if (protocol().profiles.empty()) scope.profile.clear();
   apply(file.head, scope);
   apply(one.items, scope);
   return scope;

@@ -199,10 +199,13 @@ struct Line {
 
 // Headers.
 
+/// RUBICON's. Another protocol's have the numbers of their places in its list.
 enum class Role : std::uint8_t { kMote, kSink, kBaseStation };
 enum class LinkKind : std::uint8_t { kRadio, kSerial, kPeis, kApp, kPower, kAny };
 enum class Tick : std::uint8_t { kBinaryMs, kMs, kUs };
 std::string_view role_text(Role role);
+/// Returns the role of the protocol in use that has this name.
+std::optional<Role> find_role(std::string_view name);
 std::string_view tick_text(Tick tick);
 std::string_view link_text(LinkKind kind);
 /// Returns ticks in a second: 1024, 1000 or 1000000.
@@ -213,7 +216,7 @@ struct VersionHeader {
   friend bool operator==(const VersionHeader&, const VersionHeader&) = default;
 };
 struct ProfileHeader {
-  std::string name = "paper";  ///< Or "deployed".
+  std::string name = "paper";  ///< Or "deployed", for RUBICON.
   friend bool operator==(const ProfileHeader&, const ProfileHeader&) = default;
 };
 struct TickHeader {
@@ -339,7 +342,7 @@ struct File {
   std::vector<Item> head;  ///< Before the first case.
   std::vector<Case> cases;
 
-  /// Returns a file with the headers that every file begins with.
+  /// Returns a file with the headers that every file begins with; an empty profile has none.
   static File begin(std::string_view profile, Tick tick = Tick::kBinaryMs);
   File& node(NodeHeader header);
   File& header(Header header);

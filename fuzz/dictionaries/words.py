@@ -16,6 +16,9 @@ ID = r"^- id: ([A-Z0-9-]+)$"                        # Of the catalogue.
 CODE = r"`([^`\s]+)`"                               # Of a document.
 
 TABLES = "codec/generated/rubicon/tables.h"
+APPLICATION = "spec/wire/rubicon.app.yaml"
+CALLS = [(APPLICATION, r"(?:^ *|[{,] ?)([a-z]\w*):"), (APPLICATION, r"\d: \"?([a-z]\w+)"),
+         ("conformance/trace/protocol.cc", r'\{"(\w+)", App')]
 NAMES = r'^constexpr Type \w+\{\s*"(\w+)"'
 ENTRIES = r'\{\d+, "(\w+)"\}'
 RULES = "spec/requirements.yaml"
@@ -23,7 +26,7 @@ RULES = "spec/requirements.yaml"
 # By dictionary: what it is made of, as (file or folder/*.ext, pattern).
 SOURCES = {
     "trace": [("spec/trace/rtr.ebnf", LITERAL), (TABLES, FIELD), (TABLES, NAMES),
-              (TABLES, ENTRIES), ("conformance/trace/app_messages.h", LITERAL), (RULES, ID)],
+              (TABLES, ENTRIES), *CALLS, (RULES, ID)],
     "spec": [("spec/wire/*.ksy", KEY), ("spec/wire/*.ksy", r"(?:type|enum|encoding): (\w+)"),
              ("spec/compiler/load/read_*.cc", LITERAL),
              ("spec/compiler/load/expr_parser.cc", LITERAL)],
@@ -36,7 +39,7 @@ SOURCES = {
                (TABLES, FIELD), (TABLES, NAMES), (TABLES, ENTRIES)],
     "rct": [("conformance/PORTING.md", CODE), ("conformance/test/targets/serve.cc", LITERAL),
             ("conformance/test/targets/rct_text.cc", LITERAL),
-            ("conformance/trace/app_messages.h", LITERAL), (RULES, ID)],
+            *CALLS, (RULES, ID)],
 }
 # No includes, no paths, no formats.
 GOOD = re.compile(r"^(?!.*(\.h$|\.yml$|\{\}|\\|/\w*/))[ -~]{1,48}$")

@@ -114,6 +114,20 @@ const reflect::Protocol& protocol_of(const std::string& spec) {
       "--spec", fmt::format("unknown protocol '{}'{}", spec, reflect::did_you_mean(spec, names)));
 }
 
+void use_requirements_of(const std::string& file) {
+  static rubricc::Model kept;  // The rules point into it.
+  rubricc::Diagnostics diagnostics;
+  rubricc::load_requirements(file, kept, diagnostics);
+  text::print(stderr, "{}", diagnostics.print());
+  if (!diagnostics.empty()) exit_with(kExitInput);
+  std::vector<reflect::Requirement> rules = {reflect::requirements().front()};
+  for (const rubricc::Requirement& one : kept.requirements) {
+    rules.push_back({one.id.c_str(), one.level.c_str(), one.clause.c_str(), one.sentence.c_str(),
+                     one.source.c_str(), one.roles, one.forbids, one.deployed.c_str()});
+  }
+  reflect::use_requirements(std::move(rules));
+}
+
 bool chosen_by_content(std::string_view name) { return name != kNone && name != kLinkFrames; }
 
 std::string spec_with(const reflect::Protocol& chosen,

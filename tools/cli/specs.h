@@ -25,6 +25,10 @@ std::vector<std::string> protocol_names();
 /// UsageError with the nearest name if there is none. `list` prints the names, and ends it.
 const reflect::Protocol& protocol_of(const std::string& spec);
 
+/// Sets the rules of this file in the place of RUBICON's. Its mistakes are printed as rubricc does,
+/// and end the subcommand.
+void use_requirements_of(const std::string& file);
+
 /// Returns whether a protocol may be chosen by what a capture holds: none and ieee802154 fit too
 /// much.
 bool chosen_by_content(std::string_view name);

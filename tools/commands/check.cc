@@ -32,6 +32,7 @@ namespace rubric::tools {
 namespace {
 
 constexpr const char* kCheckFooter =
+    "For RUBICON alone, whose reference machine judges.\n"
     "All files are one run: taps of the same network, and .rtr logs with what applications did.\n"
     "Examples:\n"
     "  rubric check capture.pcapng\n"

@@ -26,6 +26,7 @@ void add_install_wireshark(cli::Command& program);
 void add_messages(cli::Command& program);
 void add_monitor(cli::Command& program);
 void add_new_adapter(cli::Command& program);
+void add_new_protocol(cli::Command& program);
 void add_repro(cli::Command& program);
 void add_send(cli::Command& program);
 void add_shrink(cli::Command& program);

@@ -13,11 +13,13 @@
 #include "tools/cli/output.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/player.h"
+#include "tools/commands/protocol_folder.h"
 
 namespace rubric::tools {
 namespace {
 
 struct DiffOptions {
+  std::string protocol;
   std::vector<std::string> traces;
   std::vector<std::string> targets;
   std::vector<std::string> profiles;
@@ -32,10 +34,12 @@ constexpr const char* kDiffFooter =
     "Examples:\n"
     "  rubric diff --target ./old_mote --target ./new_mote\n"
     "  rubric diff --target machine --target machine --profile paper --profile deployed\n"
+    "  rubric diff --protocol my_protocol --target './old_node' --target './new_node'\n"
     "Exit codes: 0 no difference, 1 they differ, 2 the kit or an implementation broke,\n"
     "3 no case could be compared, 64 usage, 66 a trace cannot be read.";
 
-void compare(const DiffOptions& options) {
+void compare(DiffOptions options) {
+  use_protocol("diff", options.protocol, options.profiles, options.traces);
   if (options.targets.size() != 2) throw cli::UsageError("--target must be given twice");
   if (!options.profiles.empty() && options.profiles.size() != 2) {
     throw cli::UsageError("--profile must be given twice, once for each target");
@@ -87,6 +91,7 @@ void add_diff(cli::Command& app) {
   sub.add_option("traces", options->traces,
                  "Golden traces and folders of them; default: those of the kit")
       .type_name("TRACE");
+  add_protocol_option(sub, options->protocol);
   sub.add_option("--target", options->targets,
                  "Compare this implementation, as in rubric test; twice")
       .required()

@@ -54,7 +54,7 @@ struct ExploreOptions {
 };
 
 std::string explore_footer() {
-  std::string text = "Properties:\n";
+  std::string text = "For RUBICON alone, whose reference machine it explores.\nProperties:\n";
   for (const auto& p : explore::properties()) {
     text += fmt::format("  {:<19} {}\n", p.name, p.sentence);
   }

@@ -52,6 +52,7 @@ int run(int argc, char** argv) {
   rubric::tools::add_check(program);
   rubric::tools::add_test(program);
   rubric::tools::add_new_adapter(program);
+  rubric::tools::add_new_protocol(program);
   rubric::tools::add_shrink(program);
   rubric::tools::add_diff(program);
   rubric::tools::add_chart(program);

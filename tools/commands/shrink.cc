@@ -11,10 +11,12 @@
 #include "conformance/selftest/mutants/mutant.h"
 #include "conformance/test/runner/subject_target.h"
 #include "conformance/test/suite/cases.h"
+#include "conformance/trace/protocol.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/output.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/player.h"
+#include "tools/commands/protocol_folder.h"
 
 namespace rubric::tools {
 namespace {
@@ -23,6 +25,8 @@ using runner::CaseResult;
 using runner::CaseVerdict;
 
 struct ShrinkOptions {
+  std::string protocol;
+  std::vector<std::string> references;
   std::string trace;
   std::string target;
   std::string case_name;
@@ -34,7 +38,8 @@ constexpr const char* kShrinkFooter =
     "The result fails at the same line and by the same rule; the reference machine and all its\n"
     "legal variants pass it, as far as they pass the original. Without any one of its lines it "
     "would\n"
-    "not do so. It is a golden trace of its own.\n"
+    "not do so. It is a golden trace of its own. Machine and variants are RUBICON's: for another\n"
+    "protocol name an implementation that keeps its rules by --reference.\n"
     "Examples:\n"
     "  rubric shrink j4.rtr --target './my_adapter' --case j4.wrong_seq --out small.rtr\n"
     "  rubric test --target './my_adapter' small.rtr\n"
@@ -64,26 +69,37 @@ std::optional<Failing> find_failing(const suite::Cases& cases, const ShrinkOptio
   return std::nullopt;
 }
 
-// Returns the reference machine and its legal variants, as far as they pass a trace with what is
-// stated.
-std::vector<shrink::Player> references(const trace::File& file, const trace::Statement& stated) {
-  std::vector<runner::SubjectFactory> all = {[] { return std::make_unique<runner::Machine>(); }};
-  for (const mutants::LegalVariant& one : mutants::legal_variants()) {
-    all.push_back(mutants::wrapped(one.step));
+// Returns the user's references, and for RUBICON the reference machine and its legal variants with
+// what is stated, as far as they pass a trace.
+std::vector<shrink::Player> references(
+    const trace::File& file, const trace::Statement& stated,
+    const std::vector<std::unique_ptr<AttachedPlayer>>& attached) {
+  std::vector<shrink::Player> all;
+  for (const auto& one : attached) {
+    all.push_back(one->player());
+    if (passes(shrink::play(file, all.back()))) continue;
+    throw cli::UsageError("--reference", one->name() + " does not pass the trace itself");
   }
-  std::vector<shrink::Player> out;
-  for (const runner::SubjectFactory& make : all) {
-    const shrink::Player player{[make](const trace::NodeHeader&) {
-                                  return std::make_unique<runner::SubjectTarget>(make());
-                                },
-                                "", stated};
-    if (passes(shrink::play(file, player))) out.push_back(player);
+  const auto add = [&](const runner::SubjectFactory& make) {
+    all.push_back({[make](const trace::NodeHeader&) {
+                     return std::make_unique<runner::SubjectTarget>(make());
+                   },
+                   "", stated});
+  };
+  if (trace::protocol().has_machine) {
+    add([] { return std::make_unique<runner::Machine>(); });
+    for (const mutants::LegalVariant& one : mutants::legal_variants()) {
+      add(mutants::wrapped(one.step));
+    }
   }
-  return out;
+  std::erase_if(all, [&](const shrink::Player& one) { return !passes(shrink::play(file, one)); });
+  return all;
 }
 
 void shrink_it(const ShrinkOptions& options) {
-  const suite::Cases cases = suite::Cases::of({options.trace});
+  std::vector<std::string> traces = {options.trace};
+  use_protocol("shrink", options.protocol, {options.profile}, traces);
+  const suite::Cases cases = suite::Cases::of(traces);
   if (!options.case_name.empty() && !cases.find(options.case_name)) {
     throw cli::UsageError(options.trace + " has no case " + options.case_name);
   }
@@ -96,8 +112,12 @@ void shrink_it(const ShrinkOptions& options) {
     cli::exit_with(cli::kExitIncomplete);
   }
   const trace::Case& one = found->file.cases.at(0);
+  std::vector<std::unique_ptr<AttachedPlayer>> others;
+  for (const std::string& target : options.references) {
+    others.push_back(std::make_unique<AttachedPlayer>(target, options.shared, options.profile));
+  }
   const auto shows =
-      shrink::fails_alike(found->result, player, references(found->file, player.stated));
+      shrink::fails_alike(found->result, player, references(found->file, player.stated, others));
   const shrink::Shrunk shrunk = shrink::shrink(found->file, one, shows);
   const std::string& name = one.name;
   if (shrunk.lines_before == 0) {
@@ -122,6 +142,11 @@ void add_shrink(cli::Command& app) {
   sub.add_option("trace", options->trace, "A .rtr file").required().type_name("TRACE");
   sub.add_option("--target", options->target, "Run this implementation, as in rubric test")
       .required();
+  add_protocol_option(sub, options->protocol);
+  sub.add_option("--reference", options->references,
+                 "Require that this implementation passes the result; again for another one")
+      .check(cli::given)
+      .one_at_a_time();
   sub.add_option("--case", options->case_name, "Shrink this case (default: the first that fails)");
   sub.add_option("--profile", options->profile,
                  "Keep to paper or deployed (default: as the trace says)")

@@ -34,7 +34,8 @@ struct SimulateOptions {
 };
 
 std::string simulate_footer() {
-  std::string text = "Scenarios:\n";
+  std::string text =
+      "For RUBICON alone, of whose reference machine the nodes are made.\nScenarios:\n";
   for (const Scenario& scenario : simulate::scenarios()) {
     text += fmt::format("  {:<13} {} ({} s)\n", scenario.name, scenario.doc,
                         scenario.length_us / simulate::kUsPerSecond);

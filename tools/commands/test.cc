@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -24,6 +25,7 @@
 #include "conformance/test/suite/run.h"
 #include "conformance/test/suite/select.h"
 #include "conformance/test/targets/groups.h"
+#include "conformance/trace/protocol.h"
 #include "tools/cli/color.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/input.h"
@@ -32,6 +34,7 @@
 #include "tools/cli/terminal.h"
 #include "tools/cli/verdict.h"
 #include "tools/commands/commands.h"
+#include "tools/commands/protocol_folder.h"
 #include "tools/commands/stated.h"
 
 namespace rubric::tools {
@@ -51,12 +54,14 @@ constexpr const char* kTestFooter =
     "  serial:DEVICE[:BAUD]      a sink at a serial line; serial:tcp:HOST:PORT at an emulator's\n"
     "  sf:HOST:PORT:mote         a mote there, also serial:...:mote; its line decides nothing\n"
     "A line shows a part of a node; --app COMMAND adds its application, for cases that need it.\n"
-    "Without TRACES it is tested with the kit's own golden traces, which the program contains.\n"
+    "Without TRACES it is tested with the kit's own golden traces, which the program contains, or\n"
+    "with those of --protocol DIR.\n"
     "Examples:\n"
     "  rubric test --target ./my_adapter\n"
     "  rubric test --target 'python3 mote.py' --role mote --requirement J --quiet\n"
     "  rubric test --target ./a --target ./b --jobs 4 --expect known.yaml --report out\n"
     "  rubric test --list --requirement J4-SEQ\n"
+    "  rubric test --protocol my_protocol --target 'python3 my_protocol/node.py'\n"
     "Before its first case each implementation has to refuse an unknown command, and to fail\n"
     "cases that no implementation can pass.\n"
     "Exit codes: 0 as expected, 1 an unexpected failure, or an expectation that is not true, 2 an\n"
@@ -66,6 +71,7 @@ constexpr const char* kTestFooter =
     "64 usage, 66 traces cannot be read, 74 output cannot be written.";
 
 struct TestOptions {
+  std::string protocol;
   std::vector<std::string> traces;
   std::vector<std::string> targets;
   std::string app;
@@ -123,9 +129,14 @@ std::optional<suite::EarlierRun> read_earlier(const TestOptions& options) {
 
 std::vector<suite::SuiteCase> selected(const TestOptions& options, const suite::Cases& cases) {
   suite::Selection selection = options.selection;
-  if (options.role == "mote") selection.role = machine::Role::kMote;
-  if (options.role == "sink") selection.role = machine::Role::kSink;
-  if (options.role == "base_station") selection.role = machine::Role::kBaseStation;
+  if (!options.role.empty()) {
+    const auto role = trace::find_role(options.role);
+    if (!role) {
+      throw cli::UsageError("--role", fmt::format("{} not in {{{}}}", options.role,
+                                                  fmt::join(trace::role_names(), ",")));
+    }
+    selection.role = static_cast<machine::Role>(*role);
+  }
   if (!options.shard.empty()) {
     const auto shard = suite::parse_shard(options.shard);
     if (!shard) {
@@ -213,13 +224,15 @@ suite::SuiteRun work(const TestOptions& options, const suite::Cases& cases, suit
                      const std::optional<suite::EarlierRun>& earlier, const suite::TextOptions& how,
                      Text& text) {
   suite::SuiteRun all;
+  all.protocol = options.protocol;
   all.traces = options.traces;
   all.shard = options.shard;
   all.app = options.app;
   all.stated = statement_of(options.stated);
   all.seed = options.seed.value_or(0);
   all.rules_required = options.rules_required;
-  if (!options.profile.empty()) all.profile = options.profile;
+  const std::vector<std::string>& profiles = trace::protocol().profiles;
+  all.profile = options.profile.empty() && !profiles.empty() ? profiles.front() : options.profile;
   targets::Options attached;
   attached.step_timeout = Milliseconds(static_cast<std::int64_t>(options.timeout_s * 1000));
   attached.start_timeout = std::max(attached.start_timeout, attached.step_timeout);
@@ -287,7 +300,8 @@ bool write_formats(const TestOptions& options, const suite::SuiteRun& run,
   return (options.report.empty() || write_folder(options, run, earlier)) && good;
 }
 
-int run_test(const TestOptions& options) {
+int run_test(TestOptions options) {
+  use_protocol(kCommand, options.protocol, {options.profile}, options.traces);
   const suite::Cases cases = read_cases(options);
   suite::Plan plan;
   plan.expected = read_expected(options);
@@ -348,7 +362,7 @@ void add_selection(cli::Command& command, TestOptions& options) {
                   "Run only cases that try this rule or family: J4-SEQ, J4, J")
       .check(cli::given);
   command.add_option("--role", options.role, "Run only cases with a node of this role under test")
-      .one_of({"mote", "sink", "base_station"});
+      .check(cli::given, "TEXT:{mote,sink,base_station}");
   command.add_option("--shard", options.shard, "Run only the Ith of N parts of the cases: I/N")
       .check(cli::given);
   command.add_flag("--list", options.list,
@@ -365,6 +379,7 @@ void add_options(cli::Command& command, TestOptions& options) {
                   "Run this command as the application, and perhaps PEIS, of a node at its line")
       .check(cli::given);
   add_selection(command, options);
+  add_protocol_option(command, options.protocol);
   command
       .add_option("--profile", options.profile,
                   "Tell nodes to keep to paper or deployed, whatever the traces say")

@@ -104,8 +104,7 @@ class Lenient {
   Lenient(const Script& script, const Played& played)
       : script_(script), played_(played), node_(node_of(script).name) {
     for (const Output& output : played.outputs) {
-      const auto* sent = std::get_if<machine::SendResult>(&output.notice);
-      if (!output.is_frame && sent) sent_.insert(sent->seq_num);
+      if (const auto number = number_sent(output)) sent_.insert(*number);
     }
   }
 
@@ -141,7 +140,7 @@ class Lenient {
     if (output.is_frame) {
       loosen_frame(output, line);
     } else {
-      loosen_notice(output.notice, line);
+      loosen_news(line);
     }
     return line;
   }
@@ -177,20 +176,24 @@ class Lenient {
     found->value = numbers_.chosen(static_cast<std::uint16_t>(found->value.number));
   }
 
-  void loosen_notice(const machine::Notice& notice, Line& line) {
-    if (const auto* sent = std::get_if<machine::SendResult>(&notice)) {
-      if (sent->seq_num == machine::kNoSeq) return;
+  void loosen_news(Line& line) {
+    const std::string& name = line.message.name;
+    const FieldValue* number = field(line, "seq_num");
+    const FieldValue* result = field(line, "result");
+    const bool success = result && result->value.text == "success";
+    if (name == "send_result") {
+      if (number->value.number != machine::kNoSeq) variable(line, "seq_num");
+    } else if (name == "ack_received") {
+      const auto acked = static_cast<std::uint16_t>(number->value.number);
+      if (success && not_well_.contains(acked)) free_field(line, "result");
       variable(line, "seq_num");
-    } else if (const auto* ack = std::get_if<machine::AckReceived>(&notice)) {
-      if (ack->success && not_well_.contains(ack->seq_num)) free_field(line, "result");
-      variable(line, "seq_num");
-    } else if (const auto* joined = std::get_if<machine::Joined>(&notice)) {
-      if (!joined->success) free_field(line, "address");
-    } else if (const auto* made = std::get_if<machine::ChannelResult>(&notice)) {
-      if (!made->success) free_field(line, "channel");
-    } else if (const auto* value = std::get_if<machine::InputValue>(&notice)) {
-      if (!value->success) free_field(line, "value");
-    } else if (std::holds_alternative<machine::Clock>(notice)) {
+    } else if (name == "joined") {
+      if (!success) free_field(line, "address");
+    } else if (name == "channel_result") {
+      if (!success) free_field(line, "channel");
+    } else if (name == "input_value") {
+      if (!success) free_field(line, "value");
+    } else if (name == "clock") {
       loosen(field(line, "ms"));
     }
   }
@@ -466,8 +469,7 @@ class CppTarget : public runner::Target, public node::Driver, public node::Appli
                               description.actuators.raw(), description.transducers.raw()}});
   }
   void received(node::Address src, std::uint8_t app_id, Bytes data) override {
-    tell(machine::Received{address_of(src), app_id, {}});
-    outputs_.back().data.assign(data.begin(), data.end());
+    tell(machine::Received{address_of(src), app_id, data});
   }
   void ack_received(std::uint8_t app_id, std::uint16_t number, bool success) override {
     tell(machine::AckReceived{app_id, number, success});
@@ -478,7 +480,7 @@ class CppTarget : public runner::Target, public node::Driver, public node::Appli
   void tell(const Notice& notice) {
     Output output;
     output.time = now_;
-    output.notice = notice;
+    output.news = events::from_notice(notice);
     outputs_.push_back(std::move(output));
   }
 

@@ -16,6 +16,7 @@
 #include "conformance/machine/messages.h"
 #include "conformance/machine/transport.h"
 #include "conformance/selftest/scripts/difference.h"
+#include "conformance/selftest/scripts/rtr.h"
 #include "conformance/test/runner/subject_target.h"
 
 namespace rubric::script {
@@ -259,9 +260,7 @@ std::uint8_t* answered_number(const Frame& frame, std::vector<std::uint8_t>& byt
 }
 
 void add_numbers(const Output& output, std::set<std::uint16_t>& numbers) {
-  if (const auto* sent = std::get_if<machine::SendResult>(&output.notice)) {
-    if (!output.is_frame) numbers.insert(sent->seq_num);
-  }
+  if (const auto number = number_sent(output)) numbers.insert(*number);
   const auto request = rubicon::JoinRequestView::parse(output.frame.bytes());
   if (output.is_frame && output.frame.type == am::kJoin && request) {
     numbers.insert(request->seq_num());

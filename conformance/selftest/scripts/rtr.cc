@@ -130,11 +130,16 @@ trace::Line line_of(const Output& output, const std::string& node) {
   if (output.is_frame) {
     return events::emitted_line(output.time, names, output.frame.frame(), output.requirement);
   }
-  machine::Notice notice = output.notice;
-  if (auto* received = std::get_if<machine::Received>(&notice)) {
-    received->data = Bytes(output.data.data(), output.data.size());
-  }
-  return events::emitted_line(output.time, names, notice, output.requirement);
+  trace::Line line = trace::app_line(output.time, node, Op::kEmits, "app", output.news);
+  const std::string_view rule = trace::requirement_text(output.requirement);
+  if (!rule.empty()) line.requirements.emplace_back(rule);
+  return line;
+}
+
+std::optional<std::uint16_t> number_sent(const Output& output) {
+  const trace::Value* const number = output.news.find("seq_num");
+  if (output.is_frame || output.news.name != "send_result" || !number) return std::nullopt;
+  return static_cast<std::uint16_t>(number->number);
 }
 
 trace::Line line_of(const Step& step, Ticks now, const std::string& node) {

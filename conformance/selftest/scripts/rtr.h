@@ -1,6 +1,8 @@
 // Makes scripts from golden traces, and golden traces from runs of scripts.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,6 +41,8 @@ trace::File to_file(const Script& script, const Played& run, const Title& title)
 trace::NodeHeader node_of(const Script& script);
 trace::File begin_file(const Script& script);
 trace::Line line_of(const runner::Output& output, const std::string& node);
+/// Returns the number of a message that was accepted, if the output says it.
+std::optional<std::uint16_t> number_sent(const runner::Output& output);
 trace::Line line_of(const Step& step, Ticks now, const std::string& node);
 /// Returns a `!>` line: nothing but what other lines take, from the start to `end`. It comes first,
 /// so that it counts even if the case ends at a line that finds nothing.

@@ -10,7 +10,6 @@
 #include "conformance/machine/lines.h"
 #include "conformance/machine/messages.h"
 #include "conformance/test/runner/subject_target.h"
-#include "conformance/trace/app_messages.h"
 #include "conformance/trace/concrete.h"
 #include "conformance/trace/events/lines.h"
 #include "conformance/trace/print.h"

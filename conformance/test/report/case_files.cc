@@ -16,6 +16,7 @@
 #include "conformance/test/report/log_lines.h"
 #include "conformance/test/report/words.h"
 #include "conformance/trace/print.h"
+#include "conformance/trace/protocol.h"
 
 namespace rubric::suite {
 namespace {
@@ -78,7 +79,7 @@ class Capture {
   void add_serial(const Line& line) {
     const auto node = std::find_if(one_.nodes.begin(), one_.nodes.end(),
                                    [&](const auto& each) { return each.name == line.node; });
-    const bool at_base = node != one_.nodes.end() && node->role == trace::Role::kBaseStation;
+    const bool at_base = node != one_.nodes.end() && !trace::role_info(node->role).radio;
     Packet packet;
     packet.framing = Framing::kHdlc;
     packet.link_type = kLinkSerial;
@@ -107,7 +108,7 @@ class Capture {
 }  // namespace
 
 std::string case_rtr(const CaseRun& one) {
-  trace::File file = trace::File::begin(one.profile.empty() ? "paper" : one.profile);
+  trace::File file = trace::File::begin(one.profile);
   for (trace::NodeHeader node : one.nodes) {
     node.whole = node.iut && one.whole;
     file.node(node);

@@ -18,6 +18,7 @@
 #include "conformance/test/report/log_lines.h"
 #include "conformance/test/report/words.h"
 #include "conformance/trace/print.h"
+#include "conformance/trace/protocol.h"
 
 namespace rubric::suite {
 namespace {
@@ -119,6 +120,7 @@ class Data {
             {"gone", gone()},
             {"stale", stale_json(run_)},
             {"rules", rules()},
+            {"roles", trace::role_names()},
             {"implementations", std::move(implementations)},
             {"frames", frames_.take()},
             {"charts", charts_.take()},

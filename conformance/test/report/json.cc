@@ -144,15 +144,16 @@ std::string json_report(const SuiteRun& run) {
   for (const ImplementationRun& one : run.implementations) {
     implementations.push_back(implementation(one));
   }
-  const Json out = {{"schema", kSchema},
-                    {"profile", run.profile},
-                    {"seed", run.seed},
-                    {"shard", run.shard},
-                    {"traces", run.traces},
-                    {"rules_required", run.rules_required},
-                    {"exit_code", exit_code(run)},
-                    {"implementations", std::move(implementations)},
-                    {"stale", stale_json(run)}};
+  Json out = {{"schema", kSchema},
+              {"profile", run.profile},
+              {"seed", run.seed},
+              {"shard", run.shard},
+              {"traces", run.traces},
+              {"rules_required", run.rules_required},
+              {"exit_code", exit_code(run)},
+              {"implementations", std::move(implementations)},
+              {"stale", stale_json(run)}};
+  if (!run.protocol.empty()) out["protocol"] = run.protocol;
   // What an implementation wrote to its standard error need not be UTF-8.
   return out.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -5,6 +5,7 @@
 
 #include "conformance/trace/parse.h"
 #include "conformance/trace/print.h"
+#include "conformance/trace/protocol.h"
 #include "conformance/trace/value_text.h"
 
 namespace rubric::suite {
@@ -69,10 +70,10 @@ std::vector<std::size_t> peers_of(const std::vector<NodeHeader>& nodes, const Li
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const NodeHeader& node = nodes[i];
     if (&node == &*self) continue;
-    const bool base = node.role == trace::Role::kBaseStation;
+    const bool base = !trace::role_info(node.role).radio;
     if (serial) {
-      const bool other_end = base != (self->role == trace::Role::kBaseStation);
-      if (other_end && node.role != trace::Role::kMote && node.island == self->island) {
+      const bool other_end = base == trace::role_info(self->role).radio;
+      if (other_end && trace::role_info(node.role).serial && node.island == self->island) {
         out.push_back(i);
       }
     } else if (base == peis && is_meant(peis ? node.island : node.id, address)) {

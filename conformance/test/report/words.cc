@@ -146,13 +146,15 @@ std::string outside_headline(const ImplementationRun& implementation) {
 
 std::string replay_command(const SuiteRun& run, const ImplementationRun& implementation,
                            const CaseRun& one) {
-  std::string out = "rubric test --target " + text::shell_word(implementation.target) +
-                    " --cases " + text::shell_word(one.name);
+  std::string out = "rubric test ";
+  if (!run.protocol.empty()) out += "--protocol " + text::shell_word(run.protocol) + ' ';
+  out += "--target " + text::shell_word(implementation.target) + " --cases " +
+         text::shell_word(one.name);
   if (!run.app.empty()) out += " --app " + text::shell_word(run.app);
   for (const trace::Stated& stated : run.stated) {
     out += " --state " + trace::statement_text({stated});
   }
-  if (run.profile != "paper") out += " --profile " + run.profile;
+  if (!run.profile.empty() && run.profile != "paper") out += " --profile " + run.profile;
   if (one.seed != 0) out += fmt::format(" --seed {}", one.seed);
   for (const std::string& path : run.traces) out += " " + text::shell_word(path);
   return out;

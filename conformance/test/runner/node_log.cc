@@ -35,11 +35,7 @@ trace::Concrete message_of(const Output& output) {
     return trace::decode({frame.dest, frame.src, 0, frame.type, {bytes.begin(), bytes.end()}},
                          kind_of(output));
   }
-  machine::Notice notice = output.notice;
-  if (auto* received = std::get_if<machine::Received>(&notice)) {
-    received->data = {output.data.data(), output.data.size()};
-  }
-  return trace::concrete(events::from_notice(notice));
+  return trace::concrete(output.news);
 }
 
 bool is_for(const trace::Line& line, const std::string& link) {
@@ -61,6 +57,16 @@ machine::Config config_of(const trace::Scope& scope, const trace::NodeHeader& no
   events::state(config.profile, node.stated);
   config.first_seq = static_cast<std::uint16_t>(1000 + 257 * scope.seed);
   return config;
+}
+
+void Target::start(const trace::Scope& scope, const trace::NodeHeader& node) {
+  reset(config_of(scope, node));
+}
+
+void Target::call(Ticks now, const trace::Concrete& message) {
+  const auto call = events::to_call(message);
+  if (!call) throw Unsupported(message.name + " is not a call of RUBICON");
+  give(now, machine::Called{*call});
 }
 
 NodeLog::NodeLog(const trace::Scope& scope, const trace::Case& one, const trace::NodeHeader& header,
@@ -118,26 +124,28 @@ Window NodeLog::give(const trace::Line& line, Ticks now, const trace::Scope& sco
                                frame.type,
                                Bytes(frame.payload.data(), frame.payload.size()),
                                Bytes(frame.packet.data(), frame.packet.size())};
-    return give(now, machine::Heard{heard});
+    target_->give(now, machine::Heard{heard});
+    return given(now);
   }
   const trace::Concrete message = trace::concrete(line.message, bindings);
   log_.push_back({now, trace::app_line(now, name_, trace::Op::kGiven, line.link, message.message)});
-  if (const auto call = events::to_call(message)) {
-    return give(now, machine::Called{*call});
+  if (shape && shape->app && shape->app->what == trace::AppWhat::kCall) {
+    target_->call(now, message);
+    return given(now);
   }
   if (const auto state = events::to_state(message, kind)) {
     if (std::holds_alternative<machine::SendDone>(*state)) {
       target_->hold_link_acks(--link_acks_to_come > 0);
     }
-    return give(now, *state);
+    target_->give(now, *state);
+    return given(now);
   }
   throw trace::TraceError(line.place, line.message.name + " cannot be given to a node");
 }
 
-// Gives what the last line of the log says, and corrects that line's time.
-Window NodeLog::give(Ticks now, const machine::Event& event) {
+// Corrects the time of the last line of the log, which was given.
+Window NodeLog::given(Ticks now) {
   LoggedLine& logged = log_.back();
-  target_->give(now, event);
   const Window given = target_->given().value_or(Window{now, now});
   logged.time = given.from;
   logged.line.time = trace::Time::at(given.from);

@@ -64,7 +64,7 @@ class NodeLog {
     std::string link;
     bool taken = false;
   };
-  Window give(Ticks now, const machine::Event& event);
+  Window given(Ticks now);
   void read_outputs();
   std::string link_name(const Output& output) const;
 

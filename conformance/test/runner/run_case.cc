@@ -18,6 +18,7 @@
 #include "conformance/trace/events/lines.h"
 #include "conformance/trace/match.h"
 #include "conformance/trace/print.h"
+#include "conformance/trace/protocol.h"
 
 namespace rubric::runner {
 namespace {
@@ -127,7 +128,7 @@ class Run {
   }
 
   void reset(NodeLog& node, const trace::NodeHeader& header) {
-    node.target().reset(config_of(scope_, header));
+    node.target().start(scope_, header);
     for (const Line* line : case_.lines()) {
       if (line->node == header.name && line->message.name == "linkack") ++node.link_acks_to_come;
     }
@@ -186,7 +187,8 @@ class Run {
       const std::int64_t* const stated = node.iut ? find(node.stated, id) : nullptr;
       if (stated) return *stated;
     }
-    return events::assumed(profile_of(scope_), id);
+    return trace::protocol().has_machine ? events::assumed(profile_of(scope_), id)
+                                         : trace::parameter(id).unstated;
   }
 
   void matched(const Line& line, Moment moment) {

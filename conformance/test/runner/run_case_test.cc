@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "conformance/test/runner/subject_target.h"
+#include "conformance/trace/events/lines.h"
 #include "conformance/trace/parse.h"
 
 namespace rubric::runner {
@@ -26,7 +27,7 @@ class Ticker : public Target {
     if (done_ == times_.size() || times_[done_] > time) return time;
     Output output;
     output.time = times_[done_++];
-    output.notice = machine::Clock{output.time};
+    output.news = events::from_notice(machine::Clock{output.time});
     outputs_.push_back(output);
     return output.time;
   }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "conformance/trace/events/lines.h"
+
 namespace rubric::runner {
 namespace {
 
@@ -101,10 +103,7 @@ void SubjectTarget::collect(Ticks now) {
         endings_.push_back({now + transmission_ticks(frame.link, frame.size_bytes), frame.link});
       }
     } else if (action.what == Action::What::kNotify) {
-      output.notice = actions_.notice_of(action);
-      if (const auto* received = std::get_if<machine::Received>(&output.notice)) {
-        output.data.assign(received->data.begin(), received->data.end());
-      }
+      output.news = events::from_notice(actions_.notice_of(action));
     } else {
       continue;
     }

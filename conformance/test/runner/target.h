@@ -9,6 +9,7 @@
 
 #include "codec/lines/broken.h"
 #include "conformance/machine/step.h"
+#include "conformance/trace/concrete.h"
 
 namespace rubric::runner {
 
@@ -19,8 +20,7 @@ struct Output {
   Ticks time = 0;
   bool is_frame = false;
   machine::Transmit frame;           ///< If it is a frame.
-  machine::Notice notice;            ///< Else; Received::data are in `data`.
-  std::vector<std::uint8_t> data;    ///< The bytes of Received.
+  trace::Message news;               ///< Else: an event of the protocol, with all its fields.
   ReqId requirement = ReqId::kNone;  ///< The rule that the implementation names; often none.
 };
 
@@ -64,10 +64,15 @@ struct Tolerance {
 class Target {
  public:
   virtual ~Target() = default;
-  /// Makes it a node that has just started, at tick 0.
+  /// Makes it a node of a trace that has just started, at tick 0. The base class knows RUBICON's
+  /// alone, and calls reset().
+  virtual void start(const trace::Scope& scope, const trace::NodeHeader& node);
+  /// Makes it a node of RUBICON that has just started, at tick 0.
   virtual void reset(const machine::Config& config) = 0;
   /// Gives an event from outside. Time does not go backwards.
   virtual void give(Ticks now, const machine::Event& event) = 0;
+  /// Gives a call of the application. The base class knows RUBICON's alone, and calls give().
+  virtual void call(Ticks now, const trace::Concrete& message);
   /// Returns the time before which it surely does nothing on its own, unless it is given something;
   /// nothing: never.
   virtual std::optional<Ticks> next() const = 0;

@@ -82,7 +82,8 @@ struct StaleExpectation {
 };
 
 struct SuiteRun {
-  std::string profile = "paper";    ///< As the user chose.
+  std::string protocol;             ///< The folder of another protocol than RUBICON, or empty.
+  std::string profile = "paper";    ///< As the user chose; empty: the protocol has none.
   std::uint64_t seed = 0;           ///< For cases that state none; each repeat adds one.
   std::string shard;                ///< "2/8", or empty.
   std::string app;                  ///< The command that shows applications, or empty.

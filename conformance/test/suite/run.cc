@@ -13,6 +13,7 @@
 #include "conformance/test/runner/subject_target.h"
 #include "conformance/test/suite/canary.h"
 #include "conformance/trace/headers.h"
+#include "conformance/trace/protocol.h"
 
 namespace rubric::suite {
 namespace {
@@ -135,7 +136,8 @@ CaseRun run_one(const SuiteCase& one, targets::Attachment& attachment, const std
                                     [&](const trace::NodeHeader&) { return attachment.target(); });
       out.foreign = out.result.not_built;
       const bool failed = out.result.verdict == CaseVerdict::kFail;
-      if (failed && out.profile != "paper") out.lines_of_profile = lines_of_profile(head, itself);
+      const bool other = trace::protocol().has_machine && out.profile != "paper";
+      if (failed && other) out.lines_of_profile = lines_of_profile(head, itself);
     } else {
       out.result.verdict = CaseVerdict::kSkip;
       out.result.reason = missing;

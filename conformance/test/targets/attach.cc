@@ -10,6 +10,7 @@
 #include "conformance/test/targets/line_target.h"
 #include "conformance/test/targets/rct_attachment.h"
 #include "conformance/test/targets/rct_text.h"
+#include "conformance/trace/protocol.h"
 
 namespace rubric::targets {
 namespace {
@@ -134,6 +135,15 @@ std::unique_ptr<Attachment> attach(const std::string& target, const Options& opt
     throw std::invalid_argument("a target has a name or is a command");
   }
   std::string_view text = target;
+  const bool of_rubicon = target == "machine" || text.starts_with("machine:") ||
+                          text.starts_with("sf:") || text.starts_with("sf-server:") ||
+                          text.starts_with("serial:");
+  if (of_rubicon && !trace::protocol().has_machine) {
+    throw std::invalid_argument(
+        fmt::format("the machine and nodes at their lines are for RUBICON; {} needs a command that "
+                    "speaks rct/1",
+                    trace::protocol().name));
+  }
   if (cut(text, "sf-server:")) return forwarder_server(text, options);
   if (cut(text, "sf:")) return forwarder_client(text, options);
   if (cut(text, "serial:")) return serial_line(text, options);

@@ -7,6 +7,7 @@
 
 #include "codec/reflect/requirements.h"
 #include "conformance/trace/events/lines.h"
+#include "conformance/trace/schema.h"
 #include "conformance/trace/value_text.h"
 
 namespace rubric::targets {
@@ -24,7 +25,8 @@ std::string read_roles(std::string_view list, std::vector<machine::Role>& out) {
     const std::size_t size = std::min(list.find(','), list.size());
     const auto role = role_of(list.substr(0, size));
     if (!role) {
-      return quoted(list.substr(0, size)) + " is not a role: mote, sink or base_station";
+      return quoted(list.substr(0, size)) +
+             " is not a role: " + trace::alternatives(trace::role_names());
     }
     out.push_back(*role);
     list.remove_prefix(std::min(size + 1, list.size()));
@@ -187,13 +189,10 @@ void AnswerReader::up(Words words) {
   if (std::string wrong = read_plain(text, message); !wrong.empty()) {
     fail(fmt::format("{}: {}", shown(text), wrong));
   }
-  const auto notice = events::to_notice(message);
-  if (!notice) fail(fmt::format("{} is not an event or result for an application", shown(text)));
-  output.notice = *notice;
-  if (auto* received = std::get_if<machine::Received>(&output.notice)) {
-    output.data.assign(received->data.begin(), received->data.end());
-    received->data = {};
+  if (trace::Schema::get().find(message.name)->app->what != trace::AppWhat::kEvent) {
+    fail(fmt::format("{} is not an event or result for an application", shown(text)));
   }
+  output.news = std::move(message.message);
   add(std::move(output));
 }
 

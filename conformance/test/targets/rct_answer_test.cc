@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "conformance/trace/print.h"
+
 namespace rubric::targets {
 namespace {
 
@@ -60,11 +62,9 @@ TEST(RctAnswer, IsRead) {
   EXPECT_FALSE(answer.outputs[1].frame.link_ack);
   EXPECT_EQ(answer.outputs[1].frame.link, machine::Link::kSerial);
   EXPECT_TRUE(equal(answer.outputs[1].frame.bytes(), frame.bytes()));
-  EXPECT_EQ(answer.outputs[2].data, (std::vector<std::uint8_t>{0x0A, 0x0B}));
+  EXPECT_EQ(trace::print(answer.outputs[2].news), "received(src=11:5 app_id=connless data=x0a0b)");
   EXPECT_EQ(answer.outputs[2].requirement, "T1-DELIVER"_rule);
-  const auto& joined = std::get<machine::Joined>(answer.outputs[3].notice);
-  EXPECT_EQ(joined.address, (machine::Address{11, 5}));
-  EXPECT_TRUE(joined.success);
+  EXPECT_EQ(trace::print(answer.outputs[3].news), "joined(address=11:5 result=success)");
   EXPECT_TRUE(answer.has_next);
   EXPECT_EQ(answer.next, 500U);
   EXPECT_EQ(answer.done, 120U);

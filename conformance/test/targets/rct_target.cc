@@ -7,6 +7,7 @@
 #include "conformance/generated/profiles.h"
 #include "conformance/test/runner/subject_target.h"
 #include "conformance/trace/events/lines.h"
+#include "conformance/trace/protocol.h"
 #include "conformance/trace/trace.h"
 
 namespace rubric::targets {
@@ -96,11 +97,23 @@ std::string reset_command(const machine::Config& config, const trace::Statement&
 }
 
 // An adapter that takes a parameter which does not exist does not know those that do.
-void RctTarget::start_node(const machine::Config& config) {
+void RctTarget::start_node(machine::Role role, const std::string& command,
+                           const trace::Statement& wanted) {
+  const std::vector<machine::Role>& roles = client_->identity().roles;
+  if (std::find(roles.begin(), roles.end(), role) == roles.end()) {
+    throw Unsupported(fmt::format("{} plays no {}", client_->identity().name, role_word(role)));
+  }
+  outputs_.clear();
+  link_acks_.clear();
+  given_.reset();
+  now_ = 0;
+  settled_ = knows_next_ = false;
+  next_.reset();
+  at_instant_ = 0;
+  clock_.start();
   Asked asked;
-  asked.command = reset_command(config, own_);
+  asked.command = command;
   asked.closing = "ready";
-  const trace::Statement wanted = asked_for(config, own_);
   if (wanted.empty()) {
     client_->ask(asked);
     return;
@@ -122,21 +135,24 @@ void RctTarget::start_node(const machine::Config& config) {
       fmt::format("it is not built with {}: `reset` takes whatever it is told", text));
 }
 
-void RctTarget::reset(const machine::Config& config) {
-  const std::vector<machine::Role>& roles = client_->identity().roles;
-  if (std::find(roles.begin(), roles.end(), config.role) == roles.end()) {
-    throw Unsupported(
-        fmt::format("{} plays no {}", client_->identity().name, role_word(config.role)));
+void RctTarget::start(const trace::Scope& scope, const trace::NodeHeader& node) {
+  if (trace::protocol().has_machine) return Target::start(scope, node);
+  std::string command = fmt::format("reset {}", trace::role_text(node.role));
+  if (node.id) command += fmt::format(" id={}", *node.id);
+  if (node.island) command += fmt::format(" island={}", *node.island);
+  command += fmt::format(" seed={}", scope.seed & 0xFFFF);
+  if (!scope.profile.empty()) command += " profile=" + scope.profile;
+  trace::Statement wanted;
+  for (const trace::Stated& one : node.stated) {
+    const std::int64_t* const own = find(own_, one.id);
+    if (one.value != (own ? *own : trace::parameter(one.id).unstated)) wanted.push_back(one);
   }
-  outputs_.clear();
-  link_acks_.clear();
-  given_.reset();
-  now_ = 0;
-  settled_ = knows_next_ = false;
-  next_.reset();
-  at_instant_ = 0;
-  clock_.start();
-  start_node(config);
+  if (!wanted.empty()) command += ' ' + trace::statement_text(wanted);
+  start_node(static_cast<machine::Role>(node.role), command, wanted);
+}
+
+void RctTarget::reset(const machine::Config& config) {
+  start_node(config.role, reset_command(config, own_), asked_for(config, own_));
 }
 
 void RctTarget::give(Ticks now, const machine::Event& event) {
@@ -147,14 +163,24 @@ void RctTarget::give(Ticks now, const machine::Event& event) {
       std::holds_alternative<machine::PowerOff>(event)) {
     link_acks_.clear();
   }
+  give_command(now, command_of(event, now));
+}
+
+void RctTarget::call(Ticks now, const trace::Concrete& message) {
+  while (run_until(now) < now) {
+  }
+  give_command(now, fmt::format("call {} {}", now, plain(message.message)));
+}
+
+void RctTarget::give_command(Ticks now, std::string command) {
   if (!client_->identity().real_time) {
-    ask(command_of(event, now), now, false);
+    ask(std::move(command), now, false);
     return;
   }
   const bool just_emitted = !outputs_.empty() && outputs_.back().time == now;
   const Ticks from = just_emitted ? now + 1 : now;
   given_ = {from, from};
-  ask(command_of(event, now), now, false);
+  ask(std::move(command), now, false);
   given_->to = std::max(now_, from);
 }
 

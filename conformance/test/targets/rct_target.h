@@ -38,8 +38,10 @@ class RctTarget : public runner::Target {
   }
   ~RctTarget() override { give_back_(std::move(client_)); }
 
+  void start(const trace::Scope& scope, const trace::NodeHeader& node) override;
   void reset(const machine::Config& config) override;
   void give(Ticks now, const machine::Event& event) override;
+  void call(Ticks now, const trace::Concrete& message) override;
   std::optional<Ticks> next() const override;
   Ticks run_until(Ticks time) override;
   const std::vector<Output>& outputs() const override { return outputs_; }
@@ -58,8 +60,8 @@ class RctTarget : public runner::Target {
   Answer answer_to(const Asked& asked, lines::Milliseconds more);
   Ticks let_pass(Ticks time);
   void compare_clocks(const std::string& command);
-
-  void start_node(const machine::Config& config);
+  void give_command(Ticks now, std::string command);
+  void start_node(machine::Role role, const std::string& command, const trace::Statement& wanted);
 
   std::unique_ptr<RctClient> client_;
   trace::Statement own_;

@@ -18,7 +18,6 @@ using machine::Role;
 using trace::Value;
 
 constexpr std::string_view kLinkWords[] = {"radio", "serial", "peis"};
-constexpr std::string_view kRoleWords[] = {"mote", "sink", "base_station"};
 
 struct LinkShown {
   std::string_view word;
@@ -61,8 +60,11 @@ std::optional<std::uint32_t> number_of(std::string_view text, std::uint32_t max)
 
 std::string_view link_word(Link link) { return kLinkWords[static_cast<std::size_t>(link)]; }
 std::optional<Link> link_of(std::string_view word) { return find_word<Link>(kLinkWords, word); }
-std::string_view role_word(Role role) { return kRoleWords[static_cast<std::size_t>(role)]; }
-std::optional<Role> role_of(std::string_view word) { return find_word<Role>(kRoleWords, word); }
+std::string_view role_word(Role role) { return trace::role_text(static_cast<trace::Role>(role)); }
+std::optional<Role> role_of(std::string_view word) {
+  const std::optional<trace::Role> role = trace::find_role(word);
+  return role ? std::optional(static_cast<Role>(*role)) : std::nullopt;
+}
 
 std::string links_text(const runner::Reach& links) {
   std::string out;
@@ -159,7 +161,7 @@ std::string read_plain(std::string_view text, trace::Concrete& out) {
   if (pattern) return "expected a plain value, not a pattern";
   try {
     out = trace::concrete(message);
-    if (message.fields.size() > trace::Schema::get().find(message.name)->app->field_count) {
+    if (message.fields.size() > trace::Schema::get().find(message.name)->app->fields.size()) {
       return "a field is given twice";
     }
   } catch (const trace::TraceError& error) {
@@ -175,11 +177,7 @@ std::string output_line(const Output& output) {
                       hex_of(output.frame.frame()));
     if (output.frame.link_ack) out += " linkack";
   } else {
-    machine::Notice notice = output.notice;
-    if (auto* received = std::get_if<machine::Received>(&notice)) {
-      received->data = {output.data.data(), output.data.size()};
-    }
-    out = fmt::format("up {} {}", output.time, plain(events::from_notice(notice)));
+    out = fmt::format("up {} {}", output.time, plain(output.news));
   }
   if (output.requirement != ReqId::kNone) {
     out += fmt::format(" [{}]", trace::requirement_text(output.requirement));

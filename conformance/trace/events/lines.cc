@@ -395,6 +395,7 @@ std::int64_t assumed(const machine::Profile& profile, ParameterId id) {
 }
 
 std::string contradiction(const trace::Statement& statement) {
+  if (!trace::protocol().has_machine) return {};
   constexpr std::int64_t kShortest = 150;  // From the latest ack to the timeout, in golden traces.
   machine::Profile profile;
   state(profile, statement);

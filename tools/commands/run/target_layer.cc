@@ -73,10 +73,8 @@ std::optional<node::Ticks> TargetLayer::run(node::Ticks now) {
       frames_.push_back(news.frame);
       continue;
     }
-    if (auto* const message = std::get_if<machine::Received>(&news.notice)) {
-      message->data = Bytes(news.data.data(), news.data.size());
-    }
-    user_.happened(news.notice);
+    const trace::Concrete message = trace::concrete(news.news);  // Has the bytes of the notice.
+    if (const auto notice = events::to_notice(message)) user_.happened(*notice);
   }
   send_next();
   return target_->next();
@@ -86,8 +84,10 @@ std::optional<node::Ticks> TargetLayer::run(node::Ticks now) {
 void TargetLayer::take(std::optional<Notice>* result) {
   for (const std::vector<runner::Output>& all = target_->outputs(); taken_ < all.size(); ++taken_) {
     const runner::Output& output = all[taken_];
-    if (result != nullptr && !output.is_frame && !*result && is_result(output.notice)) {
-      *result = output.notice;
+    std::optional<Notice> notice;
+    if (!output.is_frame) notice = events::to_notice(trace::concrete(output.news));
+    if (result != nullptr && notice && !*result && is_result(*notice)) {
+      *result = notice;
     } else if (!output.is_frame || output.frame.link == machine::Link::kRadio) {
       news_.push_back(output);
     }

@@ -3,7 +3,7 @@
 const kNoFilter = { text: '', verdict: 'all', role: 'all', family: 'all' };
 const filter = { ...kNoFilter };
 const kChoices = { verdict: ['unexpected', 'changed', 'new', ...kVerdicts],
-  role: ['mote', 'sink', 'base_station'], family: families };
+  role: data.roles, family: families };
 const kRulesShown = 4;
 
 const wordsOf = (one) => [one.name, one.comment, one.requirements.join(' '),
@@ -137,8 +137,7 @@ function filters(changed) {
     ...(has(isNew) ? [['new', 'new since']] : []),
     ...kVerdicts.filter((name) => name === filter.verdict || has((run) => run.verdict === name))
       .map((name) => [name, name])];
-  const roles = [['all', 'all'], ['mote', 'mote'], ['sink', 'sink'],
-    ['base_station', 'base station']];
+  const roles = [['all', 'all'], ...data.roles.map((name) => [name, name.replace('_', ' ')])];
   return h('form', { class: 'filters', role: 'search',
     onsubmit: (event) => event.preventDefault() },
   searchField(filter, changed),

@@ -106,7 +106,8 @@ std::string opening_text(const SuiteRun& run, const ImplementationRun& implement
   }
   std::string out = fmt::format("{} {} plays {}", who.name, who.version, roles_text(who.roles));
   if (who.real_time) out += " in real time";
-  out += fmt::format("; {}, profile {}", counted(cases, "case"), run.profile);
+  out += "; " + counted(cases, "case");
+  if (!run.profile.empty()) out += ", profile " + run.profile;
   if (run.seed != 0) out += fmt::format(", seed {}", run.seed);
   if (!run.shard.empty()) out += fmt::format(", shard {}", run.shard);
   if (!who.stated.empty()) out += "; states " + trace::statement_text(who.stated);

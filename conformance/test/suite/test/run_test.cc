@@ -9,6 +9,7 @@
 #include "conformance/test/suite/canary.h"
 #include "conformance/test/suite/select.h"
 #include "conformance/test/suite/test/testing.h"
+#include "conformance/trace/events/lines.h"
 #include "conformance/trace/print.h"
 
 namespace rubric::suite {
@@ -43,7 +44,7 @@ Plan plan(std::vector<std::string> globs = {}) {
 std::unique_ptr<runner::Target> parrot() {
   runner::Output joined;
   joined.time = 10;
-  joined.notice = machine::Joined{{10053, 5}, true};
+  joined.news = events::from_notice(machine::Joined{{10053, 5}, true});
   return std::make_unique<testing::Parrot>(std::vector{joined});
 }
 

@@ -2,15 +2,13 @@
 #include <memory>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <utility>
 #include <vector>
 
 #include "codec/text/text.h"
 #include "conformance/test/report/known_list.h"
-#include "tools/cli/exit_codes.h"
-#include "tools/cli/output.h"
 #include "tools/commands/commands.h"
+#include "tools/commands/new/new_files.h"
 
 namespace rubric::tools {
 namespace {
@@ -64,28 +62,11 @@ const Language& language_of(const std::string& name) {
   throw cli::UsageError("LANGUAGE", "python, cpp or java, not '" + name + "'");
 }
 
-[[noreturn]] void refuse(const std::string& path, const std::string& why) {
-  text::print(stderr, "rubric new-adapter: cannot write {}: {}\n", path, why);
-  cli::exit_with(cli::kExitOutput);
-}
-
 void write_skeleton(const NewAdapterOptions& options) {
   const Language& language = language_of(options.language);
-  std::error_code error;
-  fs::create_directories(options.out, error);
-  if (error) refuse(options.out, error.message());
   std::vector<std::pair<fs::path, std::string>> files = skeleton_of(language.name);
   files.emplace_back(kKnown, suite::list_to_begin_with(suite::Cases::own(), machine::Role::kMote));
-  for (auto& [path, text] : files) {
-    path = fs::path(options.out) / path;
-    if (fs::exists(fs::symlink_status(path, error))) {
-      refuse(path.string(), "it exists, and may hold your work");
-    }
-  }
-  for (const auto& [path, text] : files) {
-    if (!cli::write_file(path.string(), text)) cli::exit_with(cli::kExitOutput);
-    text::print(stdout, "wrote {}\n", path.lexically_normal().string());
-  }
+  write_new_files("new-adapter", options.out, files);
   text::print(stdout, "Next:\n");
   if (options.out != ".") text::print(stdout, "  cd {}\n", options.out);
   if (*language.build) text::print(stdout, "  {}\n", language.build);
