@@ -85,6 +85,9 @@ else()
 endif()
 install(FILES tools/wireshark/generated/rubric.lua
   DESTINATION ${CMAKE_INSTALL_DATADIR}/rubric/wireshark COMPONENT tool)
+install(DIRECTORY conformance/protocols/ctp
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/rubric/protocols COMPONENT tool
+  PATTERN "__pycache__" EXCLUDE PATTERN "bugs.json" EXCLUDE)
 # What rubricc reads.
 install(FILES spec/requirements.yaml DESTINATION ${CMAKE_INSTALL_DATADIR}/rubric/spec
   COMPONENT tool)

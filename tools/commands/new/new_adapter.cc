@@ -1,18 +1,14 @@
-#include "tools/commands/new/new_adapter.h"
-
 #include <filesystem>
 #include <memory>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <utility>
 #include <vector>
 
 #include "codec/text/text.h"
 #include "conformance/test/report/known_list.h"
-#include "tools/cli/exit_codes.h"
-#include "tools/cli/output.h"
 #include "tools/commands/commands.h"
+#include "tools/commands/new/new_files.h"
 
 namespace rubric::tools {
 namespace {
@@ -40,16 +36,16 @@ constexpr Language kLanguages[] = {
 };
 
 /// Returns names and texts of a language's files. Python's loop is that of the adapter that ships.
-std::vector<std::pair<std::string, std::string>> skeleton_of(std::string_view language) {
+std::vector<std::pair<fs::path, std::string>> skeleton_of(std::string_view language) {
   constexpr std::string_view kShipped = "rubric_python_mote 1.0";
-  std::vector<std::pair<std::string, std::string>> files;
+  std::vector<std::pair<fs::path, std::string>> files;
   for (const auto& [path, content] : skeleton_files()) {
     const fs::path file(path);
     if (file.parent_path().filename() != language) continue;
     std::string own(content);
     const std::size_t name = own.find(kShipped);
     if (name != own.npos) own.replace(name, kShipped.size(), "my_mote 0.1");
-    files.emplace_back(file.filename().string(), own);
+    files.emplace_back(file.filename(), own);
   }
   return files;
 }
@@ -68,9 +64,9 @@ const Language& language_of(const std::string& name) {
 
 void write_skeleton(const NewAdapterOptions& options) {
   const Language& language = language_of(options.language);
-  auto files = skeleton_of(language.name);
+  std::vector<std::pair<fs::path, std::string>> files = skeleton_of(language.name);
   files.emplace_back(kKnown, suite::list_to_begin_with(suite::Cases::own(), machine::Role::kMote));
-  write_new_files("new-adapter", options.out, std::move(files));
+  write_new_files("new-adapter", options.out, files);
   text::print(stdout, "Next:\n");
   if (options.out != ".") text::print(stdout, "  cd {}\n", options.out);
   if (*language.build) text::print(stdout, "  {}\n", language.build);
@@ -78,28 +74,6 @@ void write_skeleton(const NewAdapterOptions& options) {
 }
 
 }  // namespace
-
-void write_new_files(const std::string& command, const std::string& folder,
-                     std::vector<std::pair<std::string, std::string>> files) {
-  const auto refuse = [&](const fs::path& path, const std::string& why) {
-    text::print(stderr, "rubric {}: cannot write {}: {}\n", command, path.string(), why);
-    cli::exit_with(cli::kExitOutput);
-  };
-  std::error_code error;
-  for (auto& [name, text] : files) {
-    const fs::path path = fs::path(folder) / name;
-    fs::create_directories(path.parent_path(), error);
-    if (error) refuse(path.parent_path(), error.message());
-    if (fs::exists(fs::symlink_status(path, error))) {
-      refuse(path, "it exists, and may hold your work");
-    }
-    name = path.string();
-  }
-  for (const auto& [path, text] : files) {
-    if (!cli::write_file(path, text)) cli::exit_with(cli::kExitOutput);
-    text::print(stdout, "wrote {}\n", fs::path(path).lexically_normal().string());
-  }
-}
 
 void add_new_adapter(cli::Command& app) {
   auto options = std::make_shared<NewAdapterOptions>();

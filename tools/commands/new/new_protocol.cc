@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -7,21 +8,23 @@
 
 #include "codec/text/text.h"
 #include "tools/commands/commands.h"
-#include "tools/commands/new/new_adapter.h"
+#include "tools/commands/new/new_files.h"
 
 namespace rubric::tools {
 namespace {
+
+namespace fs = std::filesystem;
 
 constexpr const char* kNewProtocolFooter =
     "The folder has a wire spec, rules, two golden traces, a node in Python that passes them, and\n"
     "README.md, which says how to go on. Files that exist are never overwritten.\n"
     "Exit codes: 0 written, 64 usage, 74 something is in the way or could not be written.";
 
+constexpr std::string_view kFolder = "tools/skeletons/protocol/";
+// The loop of the node that ships.
+constexpr std::string_view kLoop = "conformance/protocols/ctp/rct.py";
 constexpr std::string_view kPlaceholder = "@name@";
 constexpr std::string_view kFileStem = "protocol.";  // Of files that are named like the protocol.
-
-constexpr std::string_view kFolder = "tools/skeletons/protocol/";
-constexpr std::string_view kLoop = "conformance/protocols/ctp/rct.py";  // Its loop ships, too.
 
 struct NewProtocolOptions {
   std::string name;
@@ -46,20 +49,15 @@ std::string replaced(std::string text, std::string_view what, const std::string&
 
 void write_protocol(const NewProtocolOptions& options) {
   const std::string out = options.out.empty() ? options.name : options.out;
-  std::vector<std::pair<std::string, std::string>> files;
-  for (const auto& [path, text] : skeleton_files()) {
-    std::string_view name = path;
-    if (name.starts_with(kFolder)) {
-      name.remove_prefix(kFolder.size());
-    } else if (name == kLoop) {
-      name.remove_prefix(name.rfind('/') + 1);
-    } else {
-      continue;
-    }
-    files.emplace_back(replaced(std::string(name), kFileStem, options.name + "."),
-                       replaced(std::string(text), kPlaceholder, options.name));
+  std::vector<std::pair<fs::path, std::string>> files;
+  for (const auto& [path, content] : skeleton_files()) {
+    std::string name = path == kLoop ? fs::path(path).filename().string() : path;
+    if (name.starts_with(kFolder)) name.erase(0, kFolder.size());
+    if (name == path) continue;  // Another skeleton's.
+    files.emplace_back(replaced(name, kFileStem, options.name + "."),
+                       replaced(std::string(content), kPlaceholder, options.name));
   }
-  write_new_files("new-protocol", out, std::move(files));
+  write_new_files("new-protocol", out, files);
   text::print(stdout, "Next:\n  rubric test --protocol {0} --target 'python3 {0}/node.py'\n", out);
 }
 
