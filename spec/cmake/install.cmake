@@ -102,9 +102,6 @@ file(WRITE ${PROJECT_BINARY_DIR}/installed/README.md "${readme}")
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS README.md)
 install(FILES LICENSE ${PROJECT_BINARY_DIR}/installed/README.md
   DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT tool)
-install(DIRECTORY conformance/protocols/ctp
-  DESTINATION ${CMAKE_INSTALL_DATADIR}/rubric/protocols COMPONENT tool
-  PATTERN "__pycache__" EXCLUDE PATTERN "bugs.json" EXCLUDE)
 # The book, if it was made: target `book`.
 install(FILES ${PROJECT_BINARY_DIR}/doc/rubric.html DESTINATION ${CMAKE_INSTALL_DOCDIR}
   COMPONENT tool OPTIONAL)
