@@ -20,7 +20,7 @@ constexpr Sign kShows[] = {
     {"N7-RADIO", "radio"},
     {"N7-CONTENT", "radio new"},
     {"N8-PEIS", "peis"},
-    {"N8-PEIS", "missing"},
+    {"N8-PEIS", "missing unused"},
     {"N8-INCOMING", "serial"},
     {"J1-REQUEST", "join_request"},
     {"J1-CALLED", "join_request"},

@@ -25,10 +25,10 @@ Fit fit(std::string_view rule, const Evidence& evidence) {
   if (evidence.contains("missing")) {
     const bool of_content = std::find(std::begin(blame::kOfContent), std::end(blame::kOfContent),
                                       rule) != std::end(blame::kOfContent);
-    const bool well = std::any_of(
-        std::begin(blame::kShows), std::end(blame::kShows), [&](const blame::Sign& sign) {
-          return sign.rule == rule && sign.words == std::string_view("missing");
-        });
+    const bool well = std::ranges::any_of(blame::kShows, [&](const blame::Sign& sign) {
+      return sign.rule == rule && std::string_view(sign.words).starts_with("missing") &&
+             shows_all(evidence, sign.words);
+    });
     if (well) return kWell;
     return of_content ? kNo : kPerhaps;
   }
@@ -43,10 +43,21 @@ Fit fit(std::string_view rule, const Evidence& evidence) {
   return known ? kNo : kPerhaps;
 }
 
+// Returns whether the rule is about messages of others, whose acks are theirs.
+bool passes_on(const std::string& rule) {
+  return rule == "T2-CONTENT" || rule.starts_with("N6-") || rule.starts_with("N7-") ||
+         rule.starts_with("N8-");
+}
+
 }  // namespace
 
 void blame_one(Failure& failure, const Evidence& evidence) {
   std::vector<std::string>& rules = failure.requirements;
+  const bool other_ack =
+      evidence.contains("differs") && evidence.contains("ack") && !evidence.contains("order");
+  if (other_ack && !rules.empty() && std::ranges::none_of(rules, passes_on)) {
+    rules.emplace_back("T2-CONTENT");
+  }
   if (rules.size() < 2) return;
   const auto blamed = std::max_element(
       rules.begin(), rules.end(),

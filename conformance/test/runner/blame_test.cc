@@ -51,8 +51,19 @@ TEST(Blame, AnAckOfAnotherNumberAndWhatIsMissingOnItsOwn) {
   EXPECT_EQ(blamed({"N3-LOCAL", "T3-SUCCESS"}, {"differs", "seq_num"}), "T3-SUCCESS");
   EXPECT_EQ(blamed({"T4-SEVERAL", "T3-SUCCESS"}, {"missing"}), "T4-SEVERAL");
   EXPECT_EQ(blamed({"S1-ALL", "S2-SIGNAL"}, {"missing"}), "S2-SIGNAL");
-  EXPECT_EQ(blamed({"T2-ACK", "N8-PEIS"}, {"missing"}), "N8-PEIS");
+  EXPECT_EQ(blamed({"T2-ACK", "N8-PEIS"}, {"missing", "unused"}), "N8-PEIS");
+  EXPECT_EQ(blamed({"T2-ACK", "N8-PEIS"}, {"missing"}), "T2-ACK") << "PEIS is in use.";
   EXPECT_EQ(blamed({"S5-UNKNOWN", "S2-SIGNAL"}, {"differs", "status"}), "S5-UNKNOWN");
+}
+
+TEST(Blame, AnAckThatDiffersIsWrongWhateverItWasAskedFor) {
+  Failure next;
+  next.requirements = {"N11-NEXT"};
+  blame_one(next, {"differs", "ack", "payload"});
+  EXPECT_EQ(next.requirements, Rules{"T2-CONTENT"});
+  EXPECT_EQ(next.suspected, Rules{"N11-NEXT"});
+  EXPECT_EQ(blamed({"N6-FORWARD"}, {"differs", "ack", "payload"}), "N6-FORWARD") << "Another's.";
+  EXPECT_EQ(blamed({"T2-ACK"}, {"differs", "ack", "order"}), "T2-ACK");
 }
 
 TEST(Blame, TheFirstOfThoseThatFitAlike) {

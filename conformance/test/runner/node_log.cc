@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 #include <optional>
 
@@ -36,6 +37,11 @@ trace::Concrete message_of(const Output& output) {
                          kind_of(output));
   }
   return trace::concrete(output.news);
+}
+
+bool is_ack(const trace::Message& message) {
+  const trace::Value* const kind = message.find("payload.trans_id");
+  return kind != nullptr && kind->text == "rubicon_ack";
 }
 
 bool is_for(const trace::Line& line, const std::string& link) {
@@ -219,11 +225,14 @@ NearestMiss NodeLog::nearest_miss(const trace::Line& line, const Window& window,
           fmt::format("nearest, at {}: {}: {}", outputs[i].time, text_of(outputs[i]), match.text()),
           {"differs"},
           outputs[i].time};
+      if (is_ack(seen.message.message)) miss.evidence.insert("ack");
       for (const trace::Difference& one : match.differences) {
         miss.evidence.insert(one.path.substr(0, one.path.find_first_of(". ")));
       }
     }
   }
+  const auto used = [&](const Seen& one) { return is_for(line, one.link); };
+  if (std::ranges::none_of(seen_, used)) miss.evidence.insert("unused");
   return miss;
 }
 
@@ -238,9 +247,8 @@ Evidence NodeLog::evidence_of(const Output& output) const {
   const bool again = std::any_of(
       seen_.begin(), seen_.begin() + static_cast<std::ptrdiff_t>(index),
       [&](const Seen& one) { return one.link == seen.link && one.message.message == message; });
-  const bool ack = text_at("payload.trans_id") == "rubicon_ack";
   return {std::string(output.is_frame ? trace::link_text(kind_of(output)) : "app"),
-          ack ? "ack" : message.name, text_at("result"), again ? "again" : "new"};
+          is_ack(message) ? "ack" : message.name, text_at("result"), again ? "again" : "new"};
 }
 
 std::string NodeLog::text_of(const Output& output) const {
