@@ -75,21 +75,27 @@ struct Options {
   std::vector<std::uint16_t> testers;  ///< AM addresses of senders that are no node under test.
 };
 
+/// From when to when a line of a node was taken by somebody else, or its application took nothing.
+struct BusyTime {
+  std::int64_t from_us = 0;
+  std::int64_t to_us = INT64_MAX;     ///< INT64_MAX: it does not end within the log.
+  std::optional<machine::Link> line;  ///< Nothing: the application.
+};
+
 /// A node as a .rtr log describes it.
 struct LoggedNode {
   std::string name;
   machine::Role role = machine::Role::kMote;
   std::uint16_t id = 0;
-  std::uint16_t island = 0;   ///< 0: not said.
-  bool under_test = true;     ///< If a log marks some nodes as under test, the others are not.
-  bool application = false;   ///< The log has its application's calls and events.
-  bool hearing = false;       ///< The log has what its radio was given; a base station's lines.
-  bool logged = false;        ///< The log has lines of it; else only a header names it.
-  bool whole = false;         ///< The log has all that it got and did.
-  std::uint8_t channels = 0;  ///< Synaptic channels of each direction; 0: not said.
-  bool peis = false;          ///< The log has its lines of PEIS.
-  /// From when to when a line of it, or its application, was busy.
-  std::vector<std::pair<std::int64_t, std::int64_t>> busy_us;
+  std::uint16_t island = 0;    ///< 0: not said.
+  bool under_test = true;      ///< If a log marks some nodes as under test, the others are not.
+  bool application = false;    ///< The log has its application's calls and events.
+  bool hearing = false;        ///< The log has what its radio was given; a base station's lines.
+  bool logged = false;         ///< The log has lines of it; else only a header names it.
+  bool whole = false;          ///< The log has all that it got and did.
+  std::uint8_t channels = 0;   ///< Synaptic channels of each direction; 0: not said.
+  bool peis = false;           ///< The log has its lines of PEIS.
+  std::vector<BusyTime> busy;  ///< In order of their beginning.
 };
 
 /// The times between which a frame of a file without stamps must lie, by frames that other files
@@ -148,7 +154,8 @@ struct Run {
   std::vector<LoggedNode> nodes;
   /// What logs state of their nodes under test; `channels` are not seen.
   trace::Statement stated = {};
-  bool all_stated = false;  ///< Other values are the profile's, by a log that is whole.
+  bool all_stated = false;             ///< Other values are the profile's, by a log that is whole.
+  std::int64_t watched_until_us = -1;  ///< By a log that is whole: its end.
   /// A log marks nodes as under test: the trace plays everybody else.
   bool marked = false;
   std::shared_ptr<RunStorage> storage;
@@ -175,6 +182,15 @@ struct Run {
   /// In order of time. What compares times before and after one is inconclusive.
   std::vector<ClockStep> steps;
   Past past;
+
+  /// Returns whether it is one log that has all of its nodes under test, from their start on
+  /// (decision 143).
+  bool tells_all() const {
+    return files.size() == 1 &&
+           std::ranges::all_of(
+               nodes, [](const LoggedNode& node) { return node.whole || !node.under_test; }) &&
+           std::ranges::any_of(nodes, &LoggedNode::whole);
+  }
 };
 
 /// The whole answer.

@@ -133,11 +133,12 @@ Run in_one_order(Run run, const AlignOptions& options, std::optional<std::int64_
     place.late_us -= first_us;
   }
   for (LoggedNode& node : run.nodes) {
-    for (auto& [from, to] : node.busy_us) {
-      from += logs_us - first_us;
-      if (to != kNone) to += logs_us - first_us;
+    for (BusyTime& busy : node.busy) {
+      busy.from_us += logs_us - first_us;
+      if (busy.to_us != kNone) busy.to_us += logs_us - first_us;
     }
   }
+  if (run.watched_until_us >= 0) run.watched_until_us += logs_us - first_us;
   merge(run);
   return run;
 }
@@ -311,6 +312,7 @@ void merge(Run& run) {
   const auto last = std::find_if(run.seen.rbegin(), run.seen.rend(),
                                  [](const Observation& seen) { return seen.place.timed(); });
   run.end_us = last == run.seen.rend() ? run.start_us : last->place.time_us;
+  run.end_us = std::max(run.end_us, run.watched_until_us);
 }
 
 bool looks_towards_sink(const machine::Frame& frame) {

@@ -106,11 +106,19 @@ class LogReader {
     if (line.time.base == trace::Time::Base::kLabel) ticks += labels_[line.time.label];
     last_ticks_ = ticks;
     if (!line.label.empty()) labels_[line.label] = ticks;
+    return us_of(ticks);
+  }
+
+  std::int64_t us_of(std::int64_t ticks) const {
     return ticks * 1'000'000 / trace::ticks_per_second(scope_.tick);
   }
 
   void take(const Line& line) {
     const std::int64_t time_us = time_of(line);
+    const bool watched = run_.all_stated && line.op == Op::kMustNot;
+    if (watched && line.time.base == trace::Time::Base::kStart) {
+      run_.watched_until_us = std::max(run_.watched_until_us, us_of(line.time.to + 1));
+    }
     if (line.op != Op::kGiven && line.op != Op::kEmits) return;
     if (line.op == Op::kGiven) take_busy(line, time_us);
     const std::optional<LinkKind> kind = scope_.link(line.link);
@@ -131,14 +139,17 @@ class LogReader {
     }
   }
 
-  // Keeps one state for all its lines: later checks only wait for the longest.
   void take_busy(const Line& line, std::int64_t time_us) {
     const bool busy = line.message.name == "busy";
-    if (!busy && line.message.name != "idle") return;
+    const std::optional<LinkKind> kind = scope_.link(line.link);
+    if ((!busy && line.message.name != "idle") || !kind) return;
+    const std::optional<machine::Link> link = events::to_link(*kind);
     for (LoggedNode& node : run_.nodes) {
       if (node.name != line.node) continue;
-      if (busy) node.busy_us.emplace_back(time_us, INT64_MAX);
-      if (!busy && !node.busy_us.empty()) node.busy_us.back().second = time_us;
+      for (BusyTime& one : node.busy) {
+        if (one.line == link) one.to_us = std::min(one.to_us, time_us);
+      }
+      if (busy) node.busy.push_back({time_us, INT64_MAX, link});
     }
   }
 

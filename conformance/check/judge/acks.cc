@@ -7,13 +7,6 @@
 #include "conformance/machine/transport.h"
 
 namespace rubric::check {
-namespace {
-
-constexpr std::size_t kCrowd = 2;
-constexpr std::int64_t kAroundUs = 100'000;
-
-}  // namespace
-
 Acks::Acks(Context& context, std::size_t devices)
     : context_(context), arrived_(devices), owed_(devices, 0), orders_(devices) {}
 
@@ -61,13 +54,14 @@ void Acks::repeated(std::uint16_t node, const Net& net) {
   }
 }
 
-void Acks::surely(std::uint16_t node, const Net& net) {
+void Acks::surely(std::uint16_t node, const Net& net, std::int64_t now_us) {
   Ring<Arrived, kRoom>& ring = arrived_[node];
   for (std::size_t i = 0; i < ring.size(); ++i) {
     Arrived& arrived = ring.newest(i);
     if (!same_message(arrived.net, net)) continue;
     if (arrived.must_ack && !arrived.sure && arrived.acks == 0) ++owed_[node];
     arrived.sure = true;
+    arrived.whole_us = std::max(arrived.whole_us, now_us);
     arrived.net = net;  // As it was given, perhaps without the bytes after its content.
     return;
   }
@@ -117,6 +111,10 @@ void Acks::sent(std::uint16_t node, const Observation& seen, const Net& ack) {
                     {"The ack of " + name_of(best->net) + " comes after " + ms_text(took) + ".",
                      "Before the sender's timeout, " + ms_text(context_.ack_timeout_us()) + ".",
                      {}});
+  }
+  if (best->sure && best->copies == 1) {
+    context_.left(node, seen.frame.link, seen.place, best->whole_us,
+                  best->whole_us + context_.response_us(), "the ack of " + name_of(best->net));
   }
   context_.findings.kept("T2-ACK"_rule);
   context_.findings.kept("T2-ONCE"_rule);
@@ -180,10 +178,12 @@ void Acks::refuse(std::uint16_t node, const Observation& seen, const Net& ack, s
 void Acks::delivered(std::uint16_t node, const Observation& seen,
                      const machine::Received& received) {
   Ring<Arrived, kRoom>& ring = arrived_[node];
+  const bool whole = context_.device(node).whole;  // Then of several the oldest comes first.
   Arrived* best = nullptr;
-  const auto rank = [](const Arrived& a) {
+  const auto rank = [whole](const Arrived& a) {
     if (a.forbidden != ReqId::kNone) return 0;
-    return a.delivered < a.copies ? 2 : 1;
+    if (a.delivered >= a.copies) return 1;
+    return whole && a.sure && a.delivers != ReqId::kNone ? 3 : 2;
   };
   for (std::size_t i = 0; i < ring.size(); ++i) {
     Arrived& arrived = ring.newest(i);
@@ -200,7 +200,8 @@ void Acks::delivered(std::uint16_t node, const Observation& seen,
          !equal(arrived.net.payload.from(2), received.data.first(came - 2)))) {
       continue;
     }
-    if (best == nullptr || rank(arrived) > rank(*best)) best = &arrived;
+    const bool older = whole && best != nullptr && rank(arrived) == rank(*best);
+    if (best == nullptr || rank(arrived) > rank(*best) || older) best = &arrived;
   }
   if (best == nullptr) {
     // Messages to a base station from other islands pass where no log and no tap is read.
@@ -229,7 +230,7 @@ void Acks::delivered(std::uint16_t node, const Observation& seen,
          "No delivery.",
          {}});
   }
-  if (rank(*best) == 2) {
+  if (rank(*best) >= 2) {
     judge_order(node, seen, *best);
     ++best->delivered;
     const bool owed = best->must_ack && best->sure;
@@ -281,30 +282,32 @@ void Acks::showed_life(std::uint16_t node, std::int64_t now_us) {
   }
 }
 
-// Returns whether so many came around that time that they may have found a buffer full (decision
-// 122).
-bool Acks::crowded(std::uint16_t node, const Arrived& arrived) {
+// Returns how much longer the ack may take as it comes after those of messages just before.
+std::int64_t Acks::queued_us(std::uint16_t node, const Arrived& arrived) {
   Ring<Arrived, kRoom>& ring = arrived_[node];
-  std::size_t around = 0;
+  std::int64_t before = 0;
   for (std::size_t i = 0; i < ring.size(); ++i) {
-    const std::int64_t apart = ring.oldest(i).place.time_us - arrived.place.time_us;
-    if (apart > -kAroundUs && apart < kAroundUs) ++around;
+    const Arrived& other = ring.oldest(i);
+    const bool just = arrived.whole_us - other.whole_us <= context_.response_us();
+    before += other.ackable && other.order < arrived.order && just ? 1 : 0;
   }
-  return around > kCrowd;
+  return before * context_.response_us();
 }
 
 // Reports an ack that surely is owed and, by `now_us`, overdue.
 void Acks::missing_ack(std::uint16_t node, Arrived& arrived, std::int64_t now_us, bool lives) {
-  if (now_us <= context_.due_us(node, arrived.whole_us)) return;
+  const Device& device = context_.device(node);
+  const std::int64_t due_us = context_.due_us(node, arrived.whole_us);
+  if (now_us <= due_us || (device.whole && now_us <= due_us + queued_us(node, arrived))) return;
   --owed_[node];
   arrived.must_ack = false;
-  const Device& device = context_.device(node);
   // A radio frame of the node may have escaped; a serial line is seen whole.
   const bool by_radio =
       device.role == machine::Role::kMote ||
       (device.role == machine::Role::kSink && arrived.net.src.devid != machine::kNullDevid);
   Severity severity = Severity::kFail;
-  if (crowded(node, arrived) || context_.who.damaged(arrived.place.time_us, now_us)) {
+  if (context_.crowded(node, arrived.place.time_us) ||
+      context_.who.damaged(arrived.place.time_us, now_us)) {
     severity = Severity::kInconclusive;
   } else if (by_radio) {
     severity = context_.without(node, arrived.place.time_us, now_us);
@@ -341,7 +344,9 @@ void Acks::missing_delivery(std::uint16_t node, Arrived& arrived, std::int64_t n
   const bool held = context_.busy(node, arrived.whole_us, due_us);
   if (delivered_before(node, arrived)) return;
   context_.report(
-      arrived.delivers, held || crowded(node, arrived) ? Severity::kInconclusive : Severity::kFail,
+      arrived.delivers,
+      held || context_.crowded(node, arrived.place.time_us) ? Severity::kInconclusive
+                                                            : Severity::kFail,
       arrived.place, node,
       {"The node was given " + name_of(arrived.net) +
            ", and its application did not get it within " + ms_text(context_.response_us()) + ".",
@@ -350,14 +355,14 @@ void Acks::missing_delivery(std::uint16_t node, Arrived& arrived, std::int64_t n
   arrived.delivers = ReqId::kNone;
 }
 
-void Acks::interrupted(std::uint16_t node, std::int64_t now_us) {
+void Acks::interrupted(std::uint16_t node, std::int64_t now_us, bool still_gets) {
   Ring<Arrived, kRoom>& ring = arrived_[node];
   for (std::size_t i = 0; i < ring.size(); ++i) {
     Arrived& arrived = ring.newest(i);
     if (now_us > context_.due_us(node, arrived.whole_us)) continue;
     if (arrived.must_ack && arrived.sure && arrived.acks == 0) --owed_[node];
     arrived.must_ack = false;
-    arrived.delivers = ReqId::kNone;
+    if (!still_gets) arrived.delivers = ReqId::kNone;
   }
 }
 
@@ -370,6 +375,12 @@ void Acks::close(std::uint16_t node, Arrived& arrived) {
                   {"No ack of " + name_of(arrived.net) + "; nothing proves that it arrived.",
                    "An ack, if it arrived.",
                    {}});
+}
+
+void Acks::overdue(std::uint16_t node, std::int64_t now_us) {
+  showed_life(node, now_us);
+  Ring<Arrived, kRoom>& ring = arrived_[node];
+  for (std::size_t i = 0; i < ring.size(); ++i) missing_delivery(node, ring.oldest(i), now_us);
 }
 
 void Acks::finish(std::int64_t end_us) {

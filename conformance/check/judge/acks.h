@@ -24,14 +24,14 @@
 //
 // Why an inconclusive finding is never a failure here: a missing ack fails only if the message
 // surely arrived, the response time is over, the node sent something afterwards, no bytes were
-// damaged in between, no more than kCrowd messages came within kAroundUs (decision 122), and the
-// ack cannot have escaped: Context::without() says that of a node that acks by radio, while a
-// serial line is seen whole. What is still open when the run ends, or when kRoom newer messages
-// have come, is inconclusive, or no finding where a log shows that it never arrived. An ack of
-// nothing that came fails only in a run that starts cold, with a complete sniffer, and at a sink of
-// whose line both directions were recorded. A second ack fails only if no second copy of the
-// message can have escaped. What the body of an ack or the rules about the message itself forbid
-// fails at once (or is weak, where the rule is a SHOULD): nothing that escaped would put it right.
+// damaged in between, not too many messages came at once (Context::crowded()), and the ack cannot
+// have escaped: Context::without() says that of a node that acks by radio, while a serial line is
+// seen whole. What is still open when the run ends, or when kRoom newer messages have come, is
+// inconclusive, or no finding where a log shows that it never arrived. An ack of nothing that came
+// fails only in a run that starts cold, with a complete sniffer, and at a sink of whose line both
+// directions were recorded. A second ack fails only if no second copy of the message can have
+// escaped. What the body of an ack or the rules about the message itself forbid fails at once (or
+// is weak, where the rule is a SHOULD): nothing that escaped would put it right.
 #pragma once
 
 #include <cstdint>
@@ -80,16 +80,18 @@ class Acks {
                const Arrival& arrival);
   void repeated(std::uint16_t node, const Net& net);
   /// Notes that by a log the node received the message.
-  void surely(std::uint16_t node, const Net& net);
+  void surely(std::uint16_t node, const Net& net, std::int64_t now_us);
   /// Judges an ack that `node` sends as a message of its own.
   void sent(std::uint16_t node, const Observation& seen, const Net& ack);
   /// Judges a message that by a log the application of `node` got.
   void delivered(std::uint16_t node, const Observation& seen, const machine::Received& received);
   /// Notes that the node sent something at this time, so whatever it still owes is overdue.
   void showed_life(std::uint16_t node, std::int64_t now_us);
+  /// Judges what the node owes, by a log that has all that it does until then.
+  void overdue(std::uint16_t node, std::int64_t now_us);
   /// Notes that an interface was switched off or the island changed: what is not yet overdue may
-  /// never be handled.
-  void interrupted(std::uint16_t node, std::int64_t now_us);
+  /// never be acked, and, unless its application `still_gets` it, never delivered.
+  void interrupted(std::uint16_t node, std::int64_t now_us, bool still_gets = false);
   void finish(std::int64_t end_us);
 
  private:
@@ -98,7 +100,7 @@ class Acks {
   void close(std::uint16_t node, Arrived& arrived);
   void missing_ack(std::uint16_t node, Arrived& arrived, std::int64_t now_us, bool lives);
   void missing_delivery(std::uint16_t node, Arrived& arrived, std::int64_t now_us);
-  bool crowded(std::uint16_t node, const Arrived& arrived);
+  std::int64_t queued_us(std::uint16_t node, const Arrived& arrived);
   bool delivered_before(std::uint16_t node, const Arrived& arrived);
   void judge_order(std::uint16_t node, const Observation& seen, const Arrived& arrived);
   void refuse(std::uint16_t node, const Observation& seen, const Net& ack, std::int32_t acked,

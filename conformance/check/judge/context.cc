@@ -222,22 +222,72 @@ std::int64_t Context::ack_timeout_us() const {
   return machine::us_of(own != 0 ? own : machine::Profile{}.ack_timeout_ticks);
 }
 
-std::int64_t Context::due_us(std::uint16_t node, std::int64_t whole_us) const {
+const std::vector<BusyTime>& Context::busy_times(std::uint16_t node) const {
+  static const std::vector<BusyTime> kNone;
+  return node < run.nodes.size() ? run.nodes[node].busy : kNone;  // A log's are the first devices.
+}
+
+std::int64_t Context::due_us(std::uint16_t node, std::int64_t whole_us,
+                             std::optional<machine::Link> line) const {
   std::int64_t due = whole_us + response_us();
-  if (node >= run.nodes.size()) return due;
-  for (const auto& [from, to] : run.nodes[node].busy_us) {
-    if (from > due || to < whole_us) continue;
-    due = to == INT64_MAX ? to : std::max(due, to + 2 * response_us());
+  for (const BusyTime& busy : busy_times(node)) {
+    const bool other = line && busy.line && busy.line != line;
+    if (other || busy.from_us > due || busy.to_us < whole_us) continue;
+    due = busy.to_us == INT64_MAX ? INT64_MAX : std::max(due, busy.to_us + 2 * response_us());
   }
   return due;
 }
 
-bool Context::busy(std::uint16_t node, std::int64_t from_us, std::int64_t to_us) const {
-  if (node >= run.nodes.size()) return false;
-  const auto& times = run.nodes[node].busy_us;
-  return std::any_of(times.begin(), times.end(), [&](const auto& time) {
-    return time.first <= to_us && time.second >= from_us;
+bool Context::busy(std::uint16_t node, std::int64_t from_us, std::int64_t to_us,
+                   std::optional<machine::Link> line) const {
+  return std::ranges::any_of(busy_times(node), [&](const BusyTime& busy) {
+    const bool other = line && busy.line && busy.line != line;
+    return !other && busy.from_us <= to_us && busy.to_us >= from_us;
   });
+}
+
+bool Context::crowded(std::uint16_t node, std::int64_t time_us) const {
+  constexpr std::size_t kCrowd = 2;
+  constexpr std::int64_t kAroundUs = 100'000;
+  const Device& its = device(node);
+  const auto from =
+      std::ranges::upper_bound(run.seen, time_us - kAroundUs, {},
+                               [](const Observation& seen) { return seen.place.time_us; });
+  std::size_t around = 0;
+  for (auto it = from; it != run.seen.end() && it->place.time_us < time_us + kAroundUs; ++it) {
+    const Mark& mark = who.marks[static_cast<std::size_t>(it - run.seen.begin())];
+    const bool line = it->kind == Observation::Kind::kSerial && mark.device != kNobody;
+    const bool air = it->kind == Observation::Kind::kRadio && !it->received && mark.device != node;
+    if (it->frame.type != am::kNet) continue;
+    if (its.hearing) {
+      around += mark.receiver == node ? 1 : 0;
+    } else if (air && (it->frame.dest == its.am || it->frame.dest == machine::kAmBroadcast)) {
+      ++around;
+    } else if (line && device(mark.device).partner == node) {
+      ++around;
+    }
+  }
+  return around > kCrowd;
+}
+
+void Context::left(std::uint16_t node, machine::Link line, const Place& at, std::int64_t from_us,
+                   std::int64_t to_us, const std::string& what) {
+  if (!device(node).hearing || !run.has_time) return;
+  Accepted& last = left_[{node, line}];
+  const bool late = at.time_us > due_us(node, to_us, line);  // That is said of it elsewhere.
+  if (!late && to_us < last.from_us) {
+    report("N2-ORDER"_rule, Severity::kFail, at, node,
+           {"On its line " + what + " leaves after " + last.what + ", which was accepted later.",
+            "The order in which they were accepted.",
+            {}});
+  }
+  if (from_us > last.from_us) last = {from_us, what};
+}
+
+void Context::begin_life(std::uint16_t node) {
+  for (const machine::Link line : {machine::Link::kRadio, machine::Link::kSerial}) {
+    left_.erase({node, line});
+  }
 }
 
 bool Context::ack_timeout_stated() const {

@@ -75,9 +75,18 @@ struct Context {
   bool ack_timeout_stated() const;
   /// Returns when an answer to what the node has whole at `whole_us` is overdue. What waited for a
   /// line or an application that was busy, by the node's log, may take as long again behind others.
-  std::int64_t due_us(std::uint16_t node, std::int64_t whole_us) const;
-  /// Returns whether by its log a line or the application of the node was busy within that time.
-  bool busy(std::uint16_t node, std::int64_t from_us, std::int64_t to_us) const;
+  /// With `line` only that line and the application count.
+  std::int64_t due_us(std::uint16_t node, std::int64_t whole_us,
+                      std::optional<machine::Link> line = {}) const;
+  /// Returns whether by its log a line or the application of the node was busy within that time;
+  /// with `line` only that line or the application.
+  bool busy(std::uint16_t node, std::int64_t from_us, std::int64_t to_us,
+            std::optional<machine::Link> line = {}) const;
+  /// Returns whether so many messages came to the node around that time that they may have found a
+  /// buffer full (decision 122).
+  bool crowded(std::uint16_t node, std::int64_t time_us) const;
+  /// Returns the times in which by its log a line or the application of the node was busy.
+  const std::vector<BusyTime>& busy_times(std::uint16_t node) const;
   machine::JoinContext join_context(std::uint16_t id, std::uint16_t island,
                                     std::int64_t now_us) const {
     return {profile(), id, island, 0, machine::ticks_of(now_us)};
@@ -90,6 +99,13 @@ struct Context {
   Severity without_mote(std::uint16_t am, std::int64_t from_us, std::int64_t to_us) const;
   /// Returns the same where Y may lie any time before, even before the capture.
   Severity without_ever(std::uint16_t cause, std::int64_t to_us) const;
+
+  /// Notes that by its log the node puts something on a line that it accepted for it between two
+  /// times. Reports an order in which what was accepted later leaves first (N2-ORDER).
+  void left(std::uint16_t node, machine::Link line, const Place& at, std::int64_t from_us,
+            std::int64_t to_us, const std::string& what);
+  /// Notes that a life of the node begins, with nothing waiting.
+  void begin_life(std::uint16_t node);
 
   /// Reports a finding about device `node` at `at`: none about testers, at most kStray about
   /// unknown senders.
@@ -117,6 +133,11 @@ struct Context {
   };
   bool gather(const Finding& finding, std::uint16_t node);
 
+  struct Accepted {
+    std::int64_t from_us = -1;
+    std::string what;
+  };
+  std::map<std::pair<std::uint16_t, machine::Link>, Accepted> left_;  // The latest of each line.
   std::map<std::uint16_t, Gathered> silent_;  // By device, after its last frame.
   std::map<std::uint16_t, Gathered> unseen_;  // By sink, about what hosts send down its line.
 };

@@ -41,7 +41,8 @@ class Forwarding {
   /// Takes a message down the serial line of `sink`.
   void heard_on_serial(std::uint16_t sink, std::uint16_t base, const Observation& seen,
                        const Net& net, bool surely_received);
-  /// Returns whether the same message came down the sink's serial line and was not yet radiated.
+  /// Returns whether the same message came down the sink's serial line, or one that may be its, and
+  /// was not yet radiated.
   bool came_down(std::uint16_t sink, const Net& net);
   /// Judges a message on its serial line that is not the sink's own.
   void sent_on_serial(std::uint16_t sink, const Observation& seen, const Net& net);
@@ -59,10 +60,12 @@ class Forwarding {
   /// Notes that one of the sinks, unknown which, sent this by radio.
   void somebody_sent(const Net& net);
   /// Notes that by a log the sink was given a message that its host sent before.
-  void surely_down(std::uint16_t sink, const Net& net);
+  void surely_down(std::uint16_t sink, const Net& net, std::int64_t now_us);
   /// Sets the sink's island from now on.
   void set_island(std::uint16_t sink, std::uint16_t island, std::int64_t now_us, bool sure);
   void begin_life(std::uint16_t sink);
+  /// Judges what the sink owes, by a log that has all that it does until then.
+  void overdue(std::uint16_t sink, std::int64_t now_us);
   void finish(std::int64_t end_us);
 
  private:
@@ -103,10 +106,11 @@ class Forwarding {
   void expire_early(Line& line, std::int64_t now_us);
   void overdue_up(Line& line, std::int64_t now_us);
   void overdue_down(Line& line, std::int64_t now_us);
-  bool crowded(Line& line, const Passing& passing);
+  bool crowded(const Line& line, const Passing& passing, machine::Link out) const;
   bool also_elsewhere(const Line& line, const Net& net);
+  bool may_be_anothers(const Line& line, const Net& net);
   void unheard(Line& line, const Passing& passing);
-  bool out_of_order(const Passing& passing, std::uint64_t& last);
+  void judge_order(Line& line, const Passing& passing, const Observation& seen);
 
   Context& context_;
   std::vector<Line> lines_;

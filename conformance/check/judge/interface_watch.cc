@@ -79,12 +79,29 @@ bool InterfaceWatch::off(std::uint16_t device, Link link, std::int64_t now_us) c
 }
 
 bool InterfaceWatch::switched_off(std::uint16_t device, Link link) const {
-  if (link == Link::kPeis) return false;
+  if (link == Link::kPeis || device == kNobody) return false;
   const Interface& interface = nodes_[device].interfaces[link == Link::kRadio ? 0 : 1];
   return interface.on.has_value() && !*interface.on;
 }
 
+std::int64_t InterfaceWatch::on_since(std::uint16_t device, Link link) const {
+  if (link == Link::kPeis) return 0;
+  const Interface& interface = nodes_[device].interfaces[link == Link::kRadio ? 0 : 1];
+  return !switched_off(device, link) ? interface.changed_us : -1;
+}
+
+//= N2-BUSY: While a line is busy nothing is sent on it.
 void InterfaceWatch::sent(std::uint16_t device, const Observation& seen) {
+  const std::int64_t now = seen.place.time_us;
+  const bool taken = std::ranges::any_of(context_.busy_times(device), [&](const BusyTime& busy) {
+    return busy.line == seen.frame.link && busy.from_us < now && now < busy.to_us;
+  });
+  if (taken && context_.run.has_time) {
+    context_.report("N2-BUSY"_rule, Severity::kFail, seen.place, device,
+                    {"A frame leaves while somebody else has the line, by the node's log.",
+                     "It waits until the line is free.",
+                     {}});
+  }
   // Frames on their way when the interface was switched off may still arrive.
   if (!context_.run.has_time || !off(device, seen.frame.link, seen.place.time_us)) return;
   context_.report("N10-OFF"_rule, Severity::kFail, seen.place, device,
@@ -109,7 +126,7 @@ void InterfaceWatch::finish(std::int64_t end_us) {
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     const auto device = static_cast<std::uint16_t>(i);
     const Node& node = nodes_[i];
-    const bool busy = i < context_.run.nodes.size() && !context_.run.nodes[i].busy_us.empty();
+    const bool busy = !context_.busy_times(device).empty();
     if (!node.awaited || busy || end_us - node.accepted.time_us <= context_.response_us()) continue;
     const Severity severity = context_.device(device).hearing
                                   ? Severity::kFail

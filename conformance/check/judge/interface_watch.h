@@ -17,7 +17,7 @@ class InterfaceWatch {
   void begin_life(std::uint16_t node);
   void called(std::uint16_t node, const Observation& seen);
   void told(std::uint16_t node, const Observation& seen);
-  /// Judges a frame that `node` sends over `link`.
+  /// Judges a frame that `node` sends: was its interface on, and its line free?
   void sent(std::uint16_t node, const Observation& seen);
   /// Notes a message of the node's own.
   void own_message(std::uint16_t node, std::uint16_t seq_num);
@@ -25,6 +25,8 @@ class InterfaceWatch {
   bool off(std::uint16_t node, machine::Link link, std::int64_t now_us) const;
   /// Returns whether it is switched off; frames that were just on their way may still have come.
   bool switched_off(std::uint16_t node, machine::Link link) const;
+  /// Returns since when it is on, 0 if it always was; -1 while it is off.
+  std::int64_t on_since(std::uint16_t node, machine::Link link) const;
   /// Returns the number of the message that shows whether the radio sends again; none otherwise.
   std::optional<std::uint16_t> awaits(std::uint16_t node) const { return nodes_[node].awaited; }
   void finish(std::int64_t end_us);

@@ -26,7 +26,18 @@ void JoinWatch::rebooted(std::uint16_t node, std::int64_t now_us) {
 
 void JoinWatch::radio_set(std::uint16_t node, bool on, std::int64_t now_us) {
   settle(node, now_us, false);
-  if (!on) debts_[node].clear();
+  // By a whole log a request is sent again if the radio is on again in time.
+  const bool whole = context_.device(node).whole;
+  if (!on) {
+    std::erase_if(debts_[node],
+                  [&](const Debt& debt) { return debt.owes != Owes::kRetry || !whole; });
+  }
+  std::erase_if(debts_[node], [&](Debt& debt) {
+    const std::int64_t expiry_us =
+        context_.run.seen[debt.index].place.time_us + context_.join_period_us();
+    debt.due_us = on ? context_.due_us(node, expiry_us, machine::Link::kRadio) : INT64_MAX;
+    return on && expiry_us < now_us;  // Its timer expired while it was off.
+  });
   off_[node] = !on;
 }
 
@@ -47,7 +58,8 @@ void JoinWatch::asked(std::uint16_t mote, std::uint32_t index) {
   debt.owes = Owes::kRetry;
   debt.index = index;
   debt.due_us =
-      context_.due_us(mote, context_.run.seen[index].place.time_us + context_.join_period_us());
+      context_.due_us(mote, context_.run.seen[index].place.time_us + context_.join_period_us(),
+                      machine::Link::kRadio);
   owe(mote, debt);
 }
 
@@ -56,7 +68,8 @@ void JoinWatch::repeats(std::uint16_t mote, std::int64_t now_us) {
   std::erase_if(debts_[mote], [&](const Debt& debt) {
     if (debt.owes != Owes::kRetry || now_us <= debt.due_us || !still_owed(mote, debt)) return false;
     const std::int64_t from = context_.run.seen[debt.index].place.time_us;
-    const bool open = crowded(mote, debt) || context_.busy(mote, from, debt.due_us) ||
+    const bool open = crowded(mote, debt) ||
+                      context_.busy(mote, from, debt.due_us, machine::Link::kRadio) ||
                       context_.who.damaged(from, now_us);
     missing(mote, debt, open ? Severity::kInconclusive : Severity::kFail);
     return true;
@@ -71,13 +84,13 @@ void JoinWatch::surely_asked(std::uint16_t sink, std::uint32_t index, std::uint1
   debt.mote_am = am;
   debt.seq_num = seq_num;
   debt.index = index;
-  debt.due_us = context_.due_us(sink, seen.place.time_us + air_us(seen));
+  debt.due_us = context_.due_us(sink, seen.place.time_us + air_us(seen), machine::Link::kRadio);
   if (!still_owed(sink, debt)) return;
   owe(sink, debt);
   sinks_.settled(am);
 }
 
-void JoinWatch::answered(std::uint16_t sink, std::uint16_t mote_am, std::int64_t now_us) {
+void JoinWatch::answered(std::uint16_t sink, std::uint16_t mote_am, const Place& at) {
   std::int64_t asked_us = -1;
   std::vector<Debt>& debts = debts_[sink];
   const auto answers = [&](const Debt& debt) {
@@ -90,7 +103,11 @@ void JoinWatch::answered(std::uint16_t sink, std::uint16_t mote_am, std::int64_t
   for (Debt& debt : debts) {
     debt.overtaken = debt.overtaken || context_.run.seen[debt.index].place.time_us < asked_us;
   }
-  settle(sink, now_us, false);
+  if (asked_us >= 0) {
+    context_.left(sink, machine::Link::kRadio, at, asked_us, asked_us + context_.response_us(),
+                  "the join_reply to mote " + number(mote_am));
+  }
+  settle(sink, at.time_us, false);
 }
 
 void JoinWatch::surely_offered(std::uint16_t mote, std::uint32_t index, const Reply& reply) {
@@ -100,8 +117,8 @@ void JoinWatch::surely_offered(std::uint16_t mote, std::uint32_t index, const Re
   debt.seq_num = reply.seq_num;
   debt.index = index;
   const Observation& seen = context_.run.seen[index];
-  debt.due_us = context_.due_us(mote, seen.place.time_us + air_us(seen));
-  if (still_owed(mote, debt)) owe(mote, debt);
+  debt.due_us = context_.due_us(mote, seen.place.time_us + air_us(seen), machine::Link::kRadio);
+  owe(mote, debt);
 }
 
 // Returns whether every explanation of the node owes it.
@@ -140,15 +157,17 @@ void JoinWatch::settle(std::uint16_t node, std::int64_t now_us, bool end) {
   if (debts.empty()) return;
   const Device& device = context_.device(node);
   std::erase_if(debts, [&](const Debt& debt) {
-    if (!still_owed(node, debt)) return true;
+    // What the application is told later may show that it is owed.
     if (now_us <= debt.due_us && (!end || device.hearing)) return false;
+    if (!still_owed(node, debt)) return true;
     const std::int64_t from = context_.run.seen[debt.index].place.time_us;
     // At its end a log of what the node was given needs no sign of life; a capture does.
     const bool sure =
         !context_.who.damaged(from, now_us) &&
         (device.hearing || (!end && context_.without(node, from, now_us) == Severity::kFail));
     // What waited for a line that was busy may have filled a buffer.
-    const bool open = crowded(node, debt) || context_.busy(node, from, debt.due_us);
+    const bool open =
+        crowded(node, debt) || context_.busy(node, from, debt.due_us, machine::Link::kRadio);
     missing(node, debt, sure && !open ? Severity::kFail : Severity::kInconclusive);
     return true;
   });

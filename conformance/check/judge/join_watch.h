@@ -30,7 +30,7 @@ class JoinWatch {
   // Called after the same function of MoteJoins or SinkJoins.
   void asked(std::uint16_t mote, std::uint32_t index);
   void surely_asked(std::uint16_t sink, std::uint32_t index, std::uint16_t seq_num);
-  void answered(std::uint16_t sink, std::uint16_t mote_am, std::int64_t now_us);
+  void answered(std::uint16_t sink, std::uint16_t mote_am, const Place& at);
   void surely_offered(std::uint16_t mote, std::uint32_t index, const Reply& reply);
   /// Judges the clock that the application of `mote` is given.
   void clock_told(std::uint16_t mote, const Observation& seen, std::uint32_t ms);

@@ -18,7 +18,9 @@ Judge::Judge(const Run& run, const Options& options)
                 run.past.settled_us),
       context_(run, options, who_, findings_),
       motes_((context_.look_up(), context_), who_.devices.size()),
+      join_calls_(context_, motes_, who_.devices.size()),
       sinks_(context_),
+      announcements_(context_, sinks_),
       joins_(context_, motes_, sinks_, who_.devices.size()),
       forwarding_(context_),
       originals_(context_, who_.devices.size()),
@@ -30,8 +32,9 @@ Judge::Judge(const Run& run, const Options& options)
 Report Judge::judge() {
   Report report;
   for (std::uint32_t i = 0; i < run_.seen.size(); ++i) look(i);
-  motes_.finish(run_.end_us);
-  sinks_.finish(run_.end_us);
+  join_calls_.finish(run_.end_us);
+  announcements_.finish(run_.end_us);
+  sinks_.finish();
   joins_.finish(run_.end_us);
   originals_.finish(run_.end_us, interfaces_);
   forwarding_.finish(run_.end_us);
@@ -58,6 +61,8 @@ bool Judge::is(std::uint16_t device, Role role) const {
 void Judge::look(std::uint32_t index) {
   const Observation& seen = run_.seen[index];
   const Mark& mark = who_.marks[index];
+  overdue(mark.device, seen.place.time_us);
+  if (mark.receiver != mark.device) overdue(mark.receiver, seen.place.time_us);
   switch (seen.kind) {
     case Kind::kRadio:
       ++frames_;
@@ -91,7 +96,8 @@ void Judge::look(std::uint32_t index) {
     case Kind::kReboot:
       if (mark.device == kNobody) break;
       joins_.rebooted(mark.device, seen.place.time_us);
-      if (is(mark.device, Role::kSink)) sinks_.ends(mark.device, seen.place.time_us);
+      announcements_.ends(mark.device, seen.place.time_us);
+      originals_.ends(mark.device, seen.place.time_us, interfaces_);
       begin_life(mark.device);
       break;
     case Kind::kLinkAck:
@@ -99,10 +105,23 @@ void Judge::look(std::uint32_t index) {
   }
 }
 
+void Judge::overdue(std::uint16_t device, std::int64_t now_us) {
+  if (device == kNobody || !who_.devices[device].whole || !run_.has_time) return;
+  joins_.showed_life(device, now_us);
+  announcements_.overdue(device, now_us);
+  forwarding_.overdue(device, now_us);
+  acks_.overdue(device, now_us);
+  peis_.overdue(device, now_us);
+  synaptic_.settle(device, now_us);
+}
+
 void Judge::begin_life(std::uint16_t device) {
   if (is(device, Role::kMote)) motes_.begin_life(device);
+  join_calls_.begin_life(device);
   if (is(device, Role::kSink)) sinks_.begin_life(device);
   if (is(device, Role::kSink)) forwarding_.begin_life(device);
+  own_island_.erase(device);
+  context_.begin_life(device);
   originals_.begin_life(device);
   acks_.begin_life(device);
   synaptic_.begin_life(device);
@@ -113,7 +132,9 @@ void Judge::begin_life(std::uint16_t device) {
 
 // Returns the sink that surely received a frame for the sinks' address.
 std::uint16_t Judge::sure_sink(std::uint32_t index) const {
-  if (who_.marks[index].receiver != kNobody) return who_.marks[index].receiver;
+  const std::uint16_t given = who_.marks[index].receiver;
+  if (interfaces_.switched_off(given, machine::Link::kRadio)) return kNobody;
+  if (given != kNobody) return given;
   return context_.only_sink != kNobody && link_acked(run_, index) ? context_.only_sink : kNobody;
 }
 
@@ -127,6 +148,7 @@ void Judge::radio(std::uint32_t index, const Observation& seen, const Mark& mark
       if (!parse_request(seen.frame.payload, request)) return;
       if (is(mark.device, Role::kMote)) {
         joins_.repeats(mark.device, seen.place.time_us);
+        join_calls_.request(mark.device, seen, request);
         motes_.request(mark.device, seen, request);
         joins_.asked(mark.device, index);
       }
@@ -139,7 +161,7 @@ void Judge::radio(std::uint32_t index, const Observation& seen, const Mark& mark
       if (!parse_reply(seen.frame.payload, reply)) return;
       if (is(mark.device, Role::kSink)) {
         sinks_.reply(mark.device, seen, reply);
-        joins_.answered(mark.device, seen.frame.dest, seen.place.time_us);
+        joins_.answered(mark.device, seen.frame.dest, seen.place);
       }
       if (is(mark.device, Role::kMote)) {
         role_broken("J10-MOTE"_rule, "A mote sends a join_reply.", seen, mark.device);
@@ -172,6 +194,7 @@ void Judge::radio(std::uint32_t index, const Observation& seen, const Mark& mark
 // Takes a join message that is known from its sender: a log's line that gives it to a node, or the
 // link's repetition, which a node may have heard instead of the first or as well.
 void Judge::joins_heard(std::uint32_t index, const Observation& seen, const Mark& mark) {
+  if (interfaces_.switched_off(mark.receiver, machine::Link::kRadio)) return;
   Request request;
   Reply reply;
   AckJoin ack;
@@ -194,9 +217,11 @@ void Judge::replied(std::uint32_t index, const Observation& seen, const Mark& ma
     if (who_.devices[mote].hearing ? !given : seen.received) return;
     const bool only =
         context_.mote_of_am[seen.frame.dest] == mote && context_.next_of_am[mote] == kNobody;
-    // The offer of a reserved island is to be ignored, as if it had not come (J4-ADDRESS).
+    // Such an offer is to be ignored, as if it had not come (J4-ADDRESS).
+    const bool void_offer =
+        machine::is_reserved(reply.island) || reply.mote != who_.devices[mote].am;
     const bool heard = given || (only && link_acked(run_, index));
-    const bool sure = heard && !machine::is_reserved(reply.island);
+    const bool sure = heard && !void_offer;
     motes_.reply(mote, seen, index, reply, sure);
     if (sure) joins_.surely_offered(mote, index, reply);
   });
@@ -211,16 +236,16 @@ void Judge::role_broken(ReqId rule, const char* what, const Observation& seen,
 void Judge::called(const Observation& seen, std::uint16_t device) {
   interfaces_.called(device, seen);
   if (const auto* join = std::get_if<machine::JoinIsland>(seen.call)) {
-    if (is(device, Role::kMote)) motes_.called(device, seen, *join);
+    if (is(device, Role::kMote)) join_calls_.called(device, seen, *join);
     return;
   }
   if (const auto* set = std::get_if<machine::SetInterface>(seen.call)) {
     if (set->link == machine::Link::kSerial) {
       forwarding_.serial_set(device, set->on);
-      sinks_.serial_set(device, set->on);
+      announcements_.serial_set(device, set->on, seen.place.time_us);
     }
     if (set->link == machine::Link::kRadio) forwarding_.radio_set(device, set->on);
-    if (!set->on) acks_.interrupted(device, seen.place.time_us);
+    if (!set->on) acks_.interrupted(device, seen.place.time_us, who_.devices[device].whole);
     if (!set->on) originals_.interrupted(device);
     if (set->link == machine::Link::kRadio) synaptic_.able(device, set->on, seen.place.time_us);
     if (set->link == machine::Link::kRadio) joins_.radio_set(device, set->on, seen.place.time_us);
@@ -235,9 +260,12 @@ void Judge::called(const Observation& seen, std::uint16_t device) {
   const bool other = std::holds_alternative<machine::GetInterface>(call) ||
                      std::holds_alternative<machine::GetClock>(call) ||
                      std::holds_alternative<machine::SetIslandId>(call);
-  if (std::holds_alternative<machine::SetIslandId>(call)) {
-    originals_.moved(device);
-    peis_.moved(device);
+  if (const auto* set = std::get_if<machine::SetIslandId>(&call)) {
+    asked_island_[device] = set->island;
+    if (!who_.devices[device].whole) {
+      originals_.moved(device);
+      peis_.moved(device);
+    }
   }
   if (other) return;  // The rest is for the channels.
   const Device& d = who_.devices[device];
@@ -250,16 +278,22 @@ void Judge::told(const Observation& seen, std::uint16_t device) {
   interfaces_.told(device, seen);
   if (const auto* joined = std::get_if<machine::Joined>(seen.notice)) {
     joins_.repeats(device, seen.place.time_us);
-    if (is(device, Role::kMote)) motes_.told(device, seen, *joined);
+    if (is(device, Role::kMote)) join_calls_.told(device, seen, *joined);
     if (joined->success) synaptic_.member(device, seen.place.time_us);
   } else if (const auto* mote_joined = std::get_if<machine::MoteJoined>(seen.notice)) {
-    if (is(device, Role::kSink)) sinks_.told(device, seen, *mote_joined);
+    if (is(device, Role::kSink)) announcements_.told(device, seen, *mote_joined);
   } else if (const auto* mote_left = std::get_if<machine::MoteLeft>(seen.notice)) {
-    if (is(device, Role::kSink)) sinks_.forgot(device, mote_left->address.devid);
+    announcements_.forgets(device, mote_left->address.devid, seen.place.time_us);
+    sinks_.forgot(device, mote_left->address.devid);
   } else if (const auto* received = std::get_if<machine::Received>(seen.notice)) {
     acks_.delivered(device, seen, *received);
   } else if (const auto* ack = std::get_if<machine::AckReceived>(seen.notice)) {
     originals_.told(device, seen, *ack);
+  } else if (const auto* done = std::get_if<machine::OperationResult>(seen.notice)) {
+    const auto asked = asked_island_.find(device);
+    if (asked == asked_island_.end()) return;
+    if (done->success && who_.devices[device].whole) own_island_[device] = asked->second;
+    asked_island_.erase(asked);
   } else if (const auto* result = std::get_if<machine::SendResult>(seen.notice)) {
     originals_.told(device, seen, *result);
   } else if (const auto* data = std::get_if<machine::SynDataReceived>(seen.notice)) {
@@ -274,11 +308,19 @@ machine::Address Judge::address_of(std::uint16_t node) const {
   const Device& device = who_.devices[node];
   if (device.role == Role::kMote) return motes_.address(node).value_or(machine::Address{});
   if (device.role == Role::kSink) return {sinks_.island(node), device.am};
+  if (const auto own = own_island_.find(node); own != own_island_.end()) {
+    return {own->second, machine::kNullDevid};
+  }
   const bool alone = device.partner == kNobody;
   return {alone ? device.island : sinks_.island(device.partner), machine::kNullDevid};
 }
 
 Report judge(const Run& run, const Options& options) {
+  if (run.tells_all() && !(options.start_cold && options.sniffer_complete)) {
+    Options known = options;
+    known.start_cold = known.sniffer_complete = true;
+    return judge(run, known);
+  }
   if (!run.loose.empty() || !run.slack_taps.empty()) return judge_each_order(run, options);
   return run.steps.empty() ? Judge(run, options).judge() : judge_each_gap(run, options);
 }
@@ -299,7 +341,7 @@ void Judge::repeated(std::uint32_t index, const Observation& seen, const Mark& m
 // Takes a log's line that gives a node a message that is known from its sender.
 void Judge::surely(const Observation& seen, const Mark& mark, const Net& net) {
   if (interfaces_.switched_off(mark.receiver, seen.frame.link)) return;
-  acks_.surely(mark.receiver, net);
+  acks_.surely(mark.receiver, net, seen.place.time_us);
   if (seen.kind == Kind::kRadio) synaptic_.given(mark.receiver, seen, net);
   if (net.is_ack()) originals_.ack_given(mark.receiver, net, seen.place.time_us);
   if (seen.kind == Kind::kRadio) {
@@ -307,8 +349,8 @@ void Judge::surely(const Observation& seen, const Mark& mark, const Net& net) {
   }
   if (mark.again) acks_.repeated(mark.receiver, net);
   if (seen.kind == Kind::kSerial) {
-    peis_.surely_up(mark.receiver, net);
-    forwarding_.surely_down(mark.receiver, net);
+    peis_.surely_up(mark.receiver, net, seen.place.time_us);
+    forwarding_.surely_down(mark.receiver, net, seen.place.time_us);
   }
 }
 
@@ -320,9 +362,8 @@ void Judge::radio_net(std::uint32_t index, const Observation& seen, const Mark& 
     motes_.net_msg(sender, seen, net);
     own_message(sender, seen, net, machine::Link::kRadio, motes_.address(sender).value_or(net.src));
   } else if (is(sender, Role::kSink)) {
-    const Device& sink = who_.devices[sender];
     // A base station may hand its sink even the sink's own message (decision 126).
-    const bool own = net.src == machine::Address{sinks_.island(sender), sink.am};
+    const bool own = sinks_.is_own(sender, net.src, seen.place.time_us);
     if (own && !forwarding_.came_down(sender, net)) {
       own_message(sender, seen, net, machine::Link::kRadio, net.src);
     } else {
@@ -410,7 +451,7 @@ void Judge::hears(std::uint16_t node, const machine::Router& router, machine::Li
   const bool straight = net.dest.pid != router.own.pid ||
                         (radio && net.src.pid != net.dest.pid && !is(sender, Role::kSink) &&
                          seen.frame.src != context_.sink_am) ||
-                        standing == Standing::kPerhaps;
+                        standing == Standing::kPerhaps || cut_on_line(node, seen);
   // A base station need not deliver what is for all of its island (N8-DELIVER).
   const bool owed = is(node, Role::kMote) ? motes_.surely_member(node)
                                           : !is(node, Role::kBaseStation) ||
@@ -448,10 +489,10 @@ void Judge::serial(std::uint32_t index, const Observation& seen, const Mark& mar
   if (sink == kNobody) {  // Nothing is known of the sink, as in a part of a run.
     Net net;
     const bool handed = seen.to_mote && !seen.received && seen.frame.type == am::kNet;
-    const machine::Address base{who_.devices[mark.device].island, machine::kNullDevid};
-    if (handed && parse_net(seen.frame.payload, net) && net.src != base) {
-      peis_.went_down(mark.device, seen, net);
-    }
+    const machine::Address base = address_of(mark.device);
+    if (!handed || !parse_net(seen.frame.payload, net)) return;
+    if (net.src == base) return own_message(mark.device, seen, net, machine::Link::kSerial, base);
+    peis_.went_down(mark.device, seen, net);
     return;
   }
   if (const std::int32_t id = set_island_id(seen.frame); id >= 0 && seen.to_mote) {
@@ -459,11 +500,12 @@ void Judge::serial(std::uint32_t index, const Observation& seen, const Mark& mar
     const auto island = static_cast<std::uint16_t>(id);
     const bool sure = serial_acked(run_, index) || mark.receiver == sink;
     acks_.interrupted(sink, seen.place.time_us);
+    if (sinks_.island(sink) != island) announcements_.ends(sink, seen.place.time_us);
     sinks_.set_island(sink, island, seen.place, sure);
     forwarding_.set_island(sink, island, seen.place.time_us, sure);
     return;
   }
-  if (!seen.to_mote) sinks_.showed_life(mark.device, seen.place.time_us, true);
+  if (!seen.to_mote) announcements_.showed_life(mark.device, seen.place.time_us, true);
   Net net;
   if (seen.frame.type != am::kNet || !parse_net(seen.frame.payload, net)) return;
   if (!seen.received) whole(seen, mark.device);
@@ -491,14 +533,12 @@ void Judge::whole(const Observation& seen, std::uint16_t sender) {
 
 void Judge::up_serial(const Observation& seen, const Mark& mark, std::uint16_t sink,
                       const Net& net) {
-  const Device& device = who_.devices[sink];
   SerialJoined joined;
   if (parse_serial_joined(net, joined)) {
-    sinks_.report(sink, seen, net, joined);
+    announcements_.report(sink, seen, net, joined);
     return base_station_hears(sink, seen, mark, net);
   }
-  const std::uint16_t island = sinks_.island(sink);
-  if (net.src == machine::Address{island, device.am}) {
+  if (sinks_.is_own(sink, net.src, seen.place.time_us)) {
     own_message(sink, seen, net, machine::Link::kSerial, net.src);
   } else {
     acks_.showed_life(sink, seen.place.time_us);

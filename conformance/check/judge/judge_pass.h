@@ -2,11 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <set>
 
 #include "conformance/check/judge/acks.h"
+#include "conformance/check/judge/announcements.h"
 #include "conformance/check/judge/forward.h"
 #include "conformance/check/judge/interface_watch.h"
+#include "conformance/check/judge/join_calls.h"
 #include "conformance/check/judge/join_watch.h"
 #include "conformance/check/judge/mote_join.h"
 #include "conformance/check/judge/peis_watch.h"
@@ -26,6 +29,8 @@ class Judge {
   bool is(std::uint16_t device, machine::Role role) const;
   machine::Address address_of(std::uint16_t node) const;
   void look(std::uint32_t index);
+  // Judges what a node owes of which a log has all that it does: until now it had the time.
+  void overdue(std::uint16_t device, std::int64_t now_us);
   void begin_life(std::uint16_t device);
   // Takes the link's own repetition, or a log's line that shows who received a frame.
   void repeated(std::uint32_t index, const Observation& seen, const Mark& mark);
@@ -44,6 +49,11 @@ class Judge {
   // Takes a message of the node's own.
   void own_message(std::uint16_t node, const Observation& seen, const Net& net, machine::Link link,
                    machine::Address own);
+  // Returns whether a message may be dropped as it is not whole (N11-SHORT).
+  bool cut_on_line(std::uint16_t node, const Observation& seen) const {
+    return who_.devices[node].whole && seen.kind == Observation::Kind::kSerial &&
+           seen.frame.payload.size() < rubicon::NetMsgView::kMaxSizeBytes;
+  }
   enum class Standing : std::uint8_t { kOutside, kPerhaps, kMember };
   Standing standing(std::uint16_t node) const;
   void mote_hears(std::uint16_t mote, const Observation& seen, const Mark& mark, const Net& net);
@@ -69,7 +79,9 @@ class Judge {
   Findings findings_;
   Context context_;
   MoteJoins motes_;
+  JoinCalls join_calls_;
   SinkJoins sinks_;
+  Announcements announcements_;
   JoinWatch joins_;
   Forwarding forwarding_;
   Originals originals_;
@@ -77,6 +89,9 @@ class Judge {
   SynapticWatch synaptic_;
   PeisWatch peis_;
   InterfaceWatch interfaces_;
+  // Of base stations whose log shows what their calls of set_island_id returned.
+  std::map<std::uint16_t, std::uint16_t> asked_island_;
+  std::map<std::uint16_t, std::uint16_t> own_island_;
   std::set<std::uint16_t> cut_short_;  // Senders of net_msg under 114 bytes on a serial line.
   std::uint64_t frames_ = 0;
 };

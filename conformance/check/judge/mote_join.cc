@@ -2,11 +2,31 @@
 
 #include <algorithm>
 
+#include "conformance/check/links.h"
+
 namespace rubric::check {
 
 using machine::JoinMote;
 using machine::JoinSend;
 using Phase = JoinMote::Phase;
+
+namespace {
+
+constexpr std::uint8_t kFewAcks = 5;
+constexpr std::int64_t kRecentUs = 1'000'000;
+
+AckJoin expected_ack(const MoteHypothesis& h) {
+  return {
+      {h.join.address.pid, h.join.sink_devid}, h.join.address, h.join.seq_num, h.join.descriptor};
+}
+
+std::string ack_text(const AckJoin& ack) {
+  return "dest " + text_of(ack.dest) + ", src " + text_of(ack.src) + ", number " +
+         number(ack.seq_num) + ", descriptor " + number(ack.descriptor.mote_type) + "/" +
+         number(ack.descriptor.transducers) + "/" + number(ack.descriptor.actuators);
+}
+
+}  // namespace
 
 MoteJoins::MoteJoins(Context& context, std::size_t devices) : context_(context), motes_(devices) {
   for (std::size_t i = 0; i < devices; ++i) {
@@ -14,20 +34,11 @@ MoteJoins::MoteJoins(Context& context, std::size_t devices) : context_(context),
     start.unknown = !context.options.start_cold;
     motes_[i].set.push_back(start);
   }
-  // Only a log that has join calls can show that there was none.
-  for (std::size_t i = 0; i < context.run.seen.size(); ++i) {
-    const Observation& seen = context.run.seen[i];
-    const std::uint16_t node = context.who.marks[i].device;
-    if (seen.kind != Observation::Kind::kCall || node == kNobody) continue;
-    if (std::holds_alternative<machine::JoinIsland>(*seen.call)) motes_[node].calls_logged = true;
-  }
 }
 
 void MoteJoins::begin_life(std::uint16_t mote) {
-  const bool logged = motes_[mote].calls_logged;
   motes_[mote] = MoteWatch{};
   motes_[mote].set.push_back(MoteHypothesis{});
-  motes_[mote].calls_logged = logged;
 }
 
 bool MoteJoins::may_have_failed(const MoteHypothesis& h, std::int64_t now_us) const {
@@ -85,24 +96,6 @@ void MoteJoins::request(std::uint16_t mote, const Observation& seen, const Reque
   } else {
     context_.findings.kept("J1-DEST"_rule);
   }
-  if (watch.calls_logged && watch.joined_calls == 0 && watch.set.size() == 1 &&
-      !watch.set[0].unknown && watch.set[0].join.phase == Phase::kOutside) {
-    context_.report("J1-CALLED"_rule, Severity::kFail, seen.place, mote,
-                    {"A join_request without a joinIsland call.", "Silence.", {}});
-  }
-  // Only the last call is open; what an earlier one left in a buffer cannot have waited for the
-  // line.
-  if (watch.call && watch.joined_calls == 1 && !seen.node.empty() &&
-      context_.due_us(mote, watch.called_us) == watch.called_us + context_.response_us()) {
-    if (watch.call->descriptor == request.descriptor) {
-      context_.findings.kept("J1-REQUEST"_rule);
-    } else {
-      context_.report("J1-REQUEST"_rule, Severity::kFail, seen.place, mote,
-                      {"A join_request has another descriptor than the joinIsland call before it.",
-                       "The descriptor of the call.",
-                       {}});
-    }
-  }
   next_.clear();
   if (!seen.place.timed()) {  // Any number of periods may lie between two frames.
     MoteHypothesis asked;
@@ -154,9 +147,7 @@ void MoteJoins::refuse_request(std::uint16_t mote, const Observation& seen,
                 number(request.seq_num) + ").";
     said.expected = "At most " + number(context_.profile().join_requests_max) + ", then FAIL.";
   }
-  for (auto it = watch.set.rbegin(); it != watch.set.rend(); ++it) {
-    said.hypotheses.push_back({sentence(*it), allows(*it), said.text});
-  }
+  said.hypotheses = explanations(watch.set, said.text);
   context_.report(rule, severity, seen.place, mote, std::move(said));
   // Go on from what was seen: the call runs, and this was its latest request.
   MoteHypothesis next = h;
@@ -240,6 +231,142 @@ void MoteJoins::keep(MoteWatch& watch, std::vector<MoteHypothesis>& next, std::u
   watch.set.assign(1, unknown);
 }
 
+// Returns the known sink of that island; kNobody if there is none.
+std::uint16_t MoteJoins::sink_of(std::uint16_t island) const {
+  const auto sink =
+      std::find_if(context_.sinks.begin(), context_.sinks.end(),
+                   [&](std::uint16_t device) { return context_.device(device).island == island; });
+  return sink == context_.sinks.end() ? kNobody : *sink;
+}
+
+// Returns the rule that forbids this ack_join to the hypothesis; kNone if it is allowed.
+ReqId MoteJoins::why_not_ack(const MoteHypothesis& h, const Observation& seen,
+                             const AckJoin& ack) const {
+  if (h.unknown) return ReqId::kNone;
+  if (h.join.phase != Phase::kMember) return "J4-JOINED"_rule;
+  AckJoin want = expected_ack(h);
+  // If the call began before the capture only a part of it is known.
+  if (h.join.seq_num == 0) want.seq_num = ack.seq_num, want.descriptor = ack.descriptor;
+  if (h.join.seq_num == 0 || h.join.sink_devid == 0) want.dest = ack.dest;
+  if (ack != want) {
+    return ack.dest.pid != want.dest.pid && ack.seq_num == want.seq_num ? "J7-CHOICE"_rule
+                                                                        : "J4-CONTENT"_rule;
+  }
+  if (seen.frame.dest != context_.sink_am) return "J4-CONTENT"_rule;
+  if (h.acks_seen == 0 || !seen.place.timed()) return ReqId::kNone;
+  const std::int64_t last = std::max(h.last_request_us, h.accepted_us + context_.response_us());
+  const std::int64_t whole_us = last + kAirMaxUs;  // The mote counts from the end of the frame.
+  if (seen.place.time_us > whole_us + context_.join_period_us() + context_.early_us()) {
+    return "J4-REPEAT"_rule;
+  }
+  return h.acks_seen > kAckJoinsMax ? "J4-REPEAT"_rule : ReqId::kNone;
+}
+
+void MoteJoins::ack_join(std::uint16_t mote, const Observation& seen, const AckJoin& ack,
+                         bool confirmed) {
+  MoteWatch& watch = motes_[mote];
+  next_.clear();
+  for (const MoteHypothesis& h : watch.set) {
+    if (why_not_ack(h, seen, ack) != ReqId::kNone) continue;
+    MoteHypothesis next = h;
+    if (h.unknown) {
+      next.join.phase = Phase::kMember;
+      next.join.address = ack.src;
+      next.join.sink_devid = ack.dest.devid;
+      next.join.seq_num = ack.seq_num;
+      next.join.descriptor = ack.descriptor;
+      next.accepted_us = seen.place.time_us;
+      next.unknown = false;
+    }
+    if (next.acks_seen < 255) ++next.acks_seen;
+    next.acked_us = seen.place.time_us;
+    next.confirmed = next.confirmed || confirmed;
+    next_.push_back(next);
+  }
+  if (next_.empty()) {
+    refuse_ack(mote, seen, ack);
+    return;
+  }
+  const std::uint8_t count = next_[0].acks_seen;
+  context_.findings.kept(count > 1 ? "J4-REPEAT"_rule : "J4-CONTENT"_rule);
+  context_.findings.kept("J4-SEQ"_rule);
+  context_.findings.kept("J7-CHOICE"_rule);
+  if (count == kFewAcks + 2) {  // The first and five repeats are fine.
+    context_.report(
+        "J4-FEW"_rule, Severity::kWeak, seen.place, mote,
+        {"The " + number(count) + "th ack_join of one join.", "At most five repeats.", {}});
+  }
+  watch.wrong_reply.reset();
+  keep(watch, next_, mote, seen);
+}
+
+void MoteJoins::refuse_ack(std::uint16_t mote, const Observation& seen, const AckJoin& ack) {
+  MoteWatch& watch = motes_[mote];
+  const std::int64_t now = seen.place.time_us;
+  const MoteHypothesis& h = watch.set.back();
+  ReqId rule = why_not_ack(h, seen, ack);
+  Said said;
+  said.hypotheses = explanations(watch.set, "ack_join with " + ack_text(ack) + ".");
+  Severity severity = Severity::kFail;
+  if (rule == "J4-REPEAT"_rule) {
+    said.text = "The same ack_join again, " + ms_text(now - h.accepted_us) + " after the reply.";
+    said.expected =
+        "Repeats within one join period (" + ms_text(context_.join_period_us()) + "), at most 20.";
+  } else if (h.join.phase == Phase::kMember) {
+    said.text =
+        "ack_join has " + ack_text(ack) + ", to AM address " + number(seen.frame.dest) + ".";
+    said.expected = ack_text(expected_ack(h)) + ", to AM address " + number(context_.sink_am) + ".";
+    // Another sink's offer, or a request with another number, may have escaped.
+    if (rule == "J7-CHOICE"_rule && h.acks_seen == 0) {
+      severity = context_.without(sink_of(ack.dest.pid), h.first_request_us, now);
+    } else if (ack.seq_num != h.join.seq_num) {
+      const bool asked_so = std::any_of(watch.set.begin(), watch.set.end(), [&](const auto& other) {
+        return other.join.phase == Phase::kJoining && other.join.seq_num == ack.seq_num;
+      });
+      const bool elsewhere = ack.dest.pid != h.join.address.pid;  // A mote with the same id there.
+      severity = context_.without(asked_so || elsewhere ? kNobody : mote, h.last_request_us, now);
+    }
+  } else {
+    // It acks a reply that it should not have accepted; the last replies may show which.
+    const bool recent = watch.wrong_reply && now - watch.wrong_place.time_us <= kRecentUs;
+    const bool asked = h.join.phase == Phase::kJoining;
+    const bool own = asked && ack.seq_num == h.join.seq_num &&
+                     ack.descriptor == h.join.descriptor && ack.src.pid == ack.dest.pid &&
+                     ack.dest.devid == context_.sink_am;
+    rule = recent && asked ? "J4-SEQ"_rule : own || !asked ? "J4-JOINED"_rule : "J4-CONTENT"_rule;
+    said.text = "ack_join with " + ack_text(ack);
+    if (recent) {
+      said.text += ", " + ms_text(now - watch.wrong_place.time_us) + " after a reply with number " +
+                   number(watch.wrong_reply->seq_num) + ", island " +
+                   number(watch.wrong_reply->island);
+    } else {
+      said.text += ", but no reply was heard that it could accept";
+    }
+    said.text += asked ? "; its request has number " + number(h.join.seq_num) + "." : ".";
+    said.expected = asked ? "No ack_join but to a reply with number " + number(h.join.seq_num) + "."
+                          : "No ack_join without a request.";
+    // One that fits its own request could answer a right reply that nobody captured.
+    if (asked && ack.seq_num != h.join.seq_num) {  // Its own, asked anew.
+      severity = context_.without(mote, h.last_request_us, now);
+    }
+    if (own) severity = context_.without(kNobody, h.first_request_us, now);
+    if (!asked) severity = context_.without(mote, context_.device(mote).first_us, now);
+    if (!asked && h.first_request_us == 0) severity = context_.without_ever(mote, now);
+  }
+  context_.report(rule, severity, seen.place, mote, std::move(said));
+  // From now on it takes itself for a member; and it may still be asking.
+  MoteHypothesis next = h;
+  if (rule == "J4-REPEAT"_rule) {
+    next.accepted_us = now;  // One finding for each late repeat.
+    watch.set.assign(1, next);
+    return;
+  }
+  MoteHypothesis unknown;
+  unknown.unknown = true;
+  unknown.unaccepted = severity == Severity::kFail && h.join.phase == Phase::kJoining;
+  watch.set.assign(1, unknown);
+}
+
 void MoteJoins::net_msg(std::uint16_t mote, const Observation& seen, const Net& net) {
   MoteWatch& watch = motes_[mote];
   std::vector<MoteHypothesis>& set = watch.set;
@@ -277,10 +404,7 @@ void MoteJoins::net_msg(std::uint16_t mote, const Observation& seen, const Net& 
     return;
   }
   Said said;
-  for (auto it = before.rbegin(); it != before.rend(); ++it) {
-    said.hypotheses.push_back(
-        {sentence(*it), allows(*it), "A net_msg from " + text_of(net.src) + " came."});
-  }
+  said.hypotheses = explanations(before, "A net_msg from " + text_of(net.src) + " came.");
   const MoteHypothesis h_before = before.back();
   const MoteHypothesis& h = h_before;
   const bool member = h.join.phase == Phase::kMember;
@@ -329,6 +453,15 @@ bool MoteJoins::is_outside(std::uint16_t mote) const {
 bool MoteJoins::surely_member(std::uint16_t mote) const {
   const auto& set = motes_[mote].set;
   return address(mote) && (set[0].told || set[0].sent);
+}
+
+std::vector<Hypothesis> MoteJoins::explanations(const std::vector<MoteHypothesis>& set,
+                                                const std::string& miss) const {
+  std::vector<Hypothesis> out;
+  for (auto it = set.rbegin(); it != set.rend(); ++it) {
+    out.push_back({sentence(*it), allows(*it), miss});
+  }
+  return out;
 }
 
 std::string MoteJoins::sentence(const MoteHypothesis& h) const {

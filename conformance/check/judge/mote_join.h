@@ -5,9 +5,9 @@
 // asking, joined, or outside. So each mote is followed as the set of all states that it may be in,
 // and it is blamed only when no state is left in which it could have done what it did.
 //
-// Decides: whether the join_requests, ack_joins and net_msgs of a mote, and the joined events of
-// its application where a log has them, are those of a mote that keeps the rules (J1, J4, J5, J7,
-// J8, J11-SEND, N1-SRC). A request or ack_join that is owed and never sent is up to join_watch.h.
+// Decides: whether the join_requests, ack_joins and net_msgs of a mote are those of a mote that
+// keeps the rules (J1, J4, J5, J7, J8, J11-SEND, N1-SRC). A request or ack_join that is owed and
+// never sent is up to join_watch.h, what its application calls and is told to join_calls.h.
 //
 // How the set changes:
 // - It starts with one hypothesis: `unknown`, or, where nothing happened before the capture
@@ -76,16 +76,12 @@ struct MoteWatch {
   std::vector<MoteHypothesis> set;
   std::optional<Reply> wrong_reply;  ///< The last that its request had not asked for.
   Place wrong_place;
-  std::int64_t joined_calls = 0;  ///< Calls that have not ended, by a log.
-  bool calls_logged = false;
-  std::optional<machine::JoinIsland> call;  ///< The last, by a log.
-  bool refusable = true;                    ///< That call may fail at once.
-  Place called;
-  std::int64_t called_us = 0;
 };
 
 class MoteJoins {
  public:
+  static constexpr std::uint8_t kExpiriesMin = 4;  ///< Before a FAIL (decision 101).
+
   MoteJoins(Context& context, std::size_t devices);
 
   void begin_life(std::uint16_t mote);
@@ -94,11 +90,16 @@ class MoteJoins {
              bool surely_received);
   void ack_join(std::uint16_t mote, const Observation& seen, const AckJoin& ack, bool confirmed);
   void net_msg(std::uint16_t mote, const Observation& seen, const Net& net);
-  void called(std::uint16_t mote, const Observation& seen, const machine::JoinIsland& call);
-  void told(std::uint16_t mote, const Observation& seen, const machine::Joined& joined);
-  void finish(std::int64_t end_us);
 
   const std::vector<MoteHypothesis>& set(std::uint16_t mote) const { return motes_[mote].set; }
+  std::vector<MoteHypothesis>& set(std::uint16_t mote) { return motes_[mote].set; }
+  /// Returns whether the mote was offered what its request had not asked for.
+  bool stray_offer(std::uint16_t mote) const { return motes_[mote].wrong_reply.has_value(); }
+  /// Returns whether a call that made its first request then may have failed by now (decision 101).
+  bool may_have_failed(const MoteHypothesis& h, std::int64_t now_us) const;
+  /// Returns the hypotheses for a finding, the furthest first, each with what it misses.
+  std::vector<Hypothesis> explanations(const std::vector<MoteHypothesis>& set,
+                                       const std::string& miss) const;
 
   /// Returns whether every hypothesis has it outside: what it hears is not for it (J11-HEAR).
   bool is_outside(std::uint16_t mote) const;
@@ -111,9 +112,7 @@ class MoteJoins {
  private:
   static constexpr std::size_t kSetMax = 256;
   static constexpr std::uint8_t kAckJoinsMax = 20;
-  static constexpr std::uint8_t kExpiriesMin = 4;  // Before a FAIL (decision 101).
 
-  bool may_have_failed(const MoteHypothesis& h, std::int64_t now_us) const;
   bool next_request(const MoteHypothesis& h, std::uint16_t id, std::int64_t now_us,
                     const Request& request, std::vector<MoteHypothesis>& out);
   void refuse_request(std::uint16_t mote, const Observation& seen, const Request& request);
@@ -122,7 +121,6 @@ class MoteJoins {
   void refuse_ack(std::uint16_t mote, const Observation& seen, const AckJoin& ack);
   std::string sentence(const MoteHypothesis& h) const;
   std::string allows(const MoteHypothesis& h) const;
-  void judge_unsaid(std::uint16_t mote, const MoteWatch& watch, std::int64_t end_us);
   void keep(MoteWatch& watch, std::vector<MoteHypothesis>& next, std::uint16_t mote,
             const Observation& seen);
 

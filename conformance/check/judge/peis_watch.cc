@@ -1,5 +1,7 @@
 #include "conformance/check/judge/peis_watch.h"
 
+#include <algorithm>
+
 #include "conformance/machine/route.h"
 
 namespace rubric::check {
@@ -51,12 +53,13 @@ void PeisWatch::came_up(std::uint16_t base, std::uint16_t island, const Observat
   bases_[base].up.push({net, seen.place, surely && net.sound, false});
 }
 
-void PeisWatch::surely_up(std::uint16_t base, const Net& net) {
+void PeisWatch::surely_up(std::uint16_t base, const Net& net, std::int64_t now_us) {
   Messages& up = bases_[base].up;
   for (std::size_t i = 0; i < up.size(); ++i) {
     Message& message = up.newest(i);
     if (!same_message(message.net, net)) continue;
     message.owed = !message.passed && message.net.sound;
+    message.given_us = now_us;
     return;
   }
 }
@@ -155,7 +158,8 @@ void PeisWatch::overdue(std::uint16_t base, Messages& messages, bool up, std::in
   for (std::size_t i = 0; i < messages.size(); ++i) waiting += messages.oldest(i).owed ? 1 : 0;
   for (std::size_t i = 0; i < messages.size(); ++i) {
     Message& message = messages.oldest(i);
-    if (!message.owed || now_us - message.place.time_us <= wait) continue;
+    const std::int64_t since_us = std::max(message.place.time_us, message.given_us);
+    if (!message.owed || now_us - since_us <= wait) continue;
     message.owed = false;
     context_.report(up ? "N8-PEIS"_rule : "N8-INCOMING"_rule,
                     waiting > kPeisCrowd ? Severity::kInconclusive : Severity::kFail, message.place,
@@ -166,6 +170,11 @@ void PeisWatch::overdue(std::uint16_t base, Messages& messages, bool up, std::in
                      "That message, unchanged, within " + ms_text(context_.response_us()) + ".",
                      {}});
   }
+}
+
+void PeisWatch::overdue(std::uint16_t base, std::int64_t now_us) {
+  overdue(base, bases_[base].up, true, now_us, false);
+  overdue(base, bases_[base].down, false, now_us, false);
 }
 
 void PeisWatch::finish(std::int64_t end_us) {

@@ -23,7 +23,7 @@ class PeisWatch {
   void came_up(std::uint16_t base, std::uint16_t island, const Observation& seen, const Net& net,
                bool surely);
   /// Notes that the log gives `base` a message that came up before.
-  void surely_up(std::uint16_t base, const Net& net);
+  void surely_up(std::uint16_t base, const Net& net, std::int64_t now_us);
   /// Judges a message that `base` gives to PEIS; `own` is its address. Returns whether it is one of
   /// its own, to be judged as such; not if no message of this kind goes there, as all else that is
   /// odd about it has that one cause.
@@ -33,6 +33,8 @@ class PeisWatch {
              bool serial_off);
   /// Judges a message that `base` sends down to its sink and that is not its own.
   void went_down(std::uint16_t base, const Observation& seen, const Net& net);
+  /// Judges what the base station owes, by a log that has all that it does until then.
+  void overdue(std::uint16_t base, std::int64_t now_us);
   void finish(std::int64_t end_us);
 
  private:
@@ -43,6 +45,7 @@ class PeisWatch {
     Place place;
     bool owed = false;  ///< Surely received, to be passed on, and not yet seen to be.
     bool passed = false;
+    std::int64_t given_us = -1;  ///< When the base station had it, by its log.
   };
   using Messages = Ring<Message, kRoom>;
   struct Base {

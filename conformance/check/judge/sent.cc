@@ -53,7 +53,11 @@ void Originals::called(std::uint16_t node, const Observation& seen, const machin
   const bool line = device.whole || (sink != kNobody && context_.device(sink).shows_line());
   bool shown = device.role == Role::kMote || line;
   if (base && !here) shown = logs_peis(context_.run, node);
-  calls_[node].push({&call, {}, {}, seen.place, free || !shown || moved_[node]});
+  const Link down = base ? Link::kSerial : Link::kRadio;  // To its motes.
+  const Link up = base ? Link::kPeis : device.role == Role::kSink ? Link::kSerial : Link::kRadio;
+  const bool to_mote = here && call.dest.devid != machine::kNullDevid;
+  calls_[node].push(
+      {&call, {}, {}, seen.place, free || !shown || moved_[node], to_mote ? down : up});
 }
 
 void Originals::used(std::uint16_t node, std::uint16_t number) {
@@ -66,20 +70,21 @@ void Originals::used(std::uint16_t node, std::uint16_t number) {
 }
 
 void Originals::interrupted(std::uint16_t node) {
+  if (context_.device(node).whole) return;  // What was accepted waits until it is on again.
   for (std::size_t i = 0; i < calls_[node].size(); ++i) calls_[node].newest(i).free = true;
 }
 
-// Reports messages that send accepted, by a log that has all that the node sends, and that never
-// left.
-void Originals::judge_unsent(std::uint16_t node, std::int64_t end_us,
-                             const InterfaceWatch& interfaces) {
+// Only a log that has all that the node sends shows that a message never left.
+void Originals::ends(std::uint16_t node, std::int64_t end_us, const InterfaceWatch& interfaces) {
   const Device& device = context_.device(node);
   if (!device.hearing || !context_.run.has_time) return;
   auto& calls = calls_[node];
   for (std::size_t i = 0; i < calls.size(); ++i) {
     const Call& one = calls.oldest(i);
     if (one.free || one.left || !one.result || one.result == machine::kNoSeq) continue;
-    if (end_us <= context_.due_us(node, one.place.time_us)) continue;
+    const std::int64_t on_us = interfaces.on_since(node, one.line);
+    const std::int64_t since = std::max(one.place.time_us, on_us);
+    if (on_us < 0 || end_us <= context_.due_us(node, since, one.line)) continue;
     if (interfaces.awaits(node) == one.result) continue;  // Said by N10-ON.
     context_.report("N2-ONCE"_rule, Severity::kFail, one.place, node,
                     {"send accepted the message to " + text_of(one.send->dest) + " with number " +
@@ -124,19 +129,16 @@ void Originals::judge_refused(std::uint16_t node, const Observation& seen, const
                    {}});
 }
 
-// Judges whether a message overtook one that send accepted before it, for the same line.
+// Judges whether a message overtook one that send accepted before it, for the same line; that one
+// may never leave.
 void Originals::judge_order(std::uint16_t node, const Observation& seen, const Call& later) {
   const Device& device = context_.device(node);
   if (device.role == Role::kBaseStation || !device.hearing) return;
   auto& calls = calls_[node];
   for (std::size_t i = 0; i < calls.size(); ++i) {
     const Call& one = calls.newest(i);
-    if (&one == &later || one.place.frame >= later.place.frame) continue;
+    if (&one == &later || one.place.frame >= later.place.frame || one.line != later.line) continue;
     if (one.free || one.left || !one.result || one.result == machine::kNoSeq) continue;
-    // By one way: to motes of the island by radio, or all by the same sink.
-    const bool same_way = device.role == Role::kMote || one.send->dest.pid == later.send->dest.pid;
-    const bool up = one.send->dest.devid == machine::kNullDevid;
-    if (!same_way || up != (later.send->dest.devid == machine::kNullDevid)) continue;
     context_.report("N2-ORDER"_rule, Severity::kFail, seen.place, node,
                     {"The message to " + text_of(later.send->dest) + " leaves before the one to " +
                          text_of(one.send->dest) + " with number " + number(*one.result) +
@@ -185,11 +187,15 @@ void Originals::judge_wrap(std::uint16_t node, const Observation& seen, const Ne
   }
   if (same != nullptr) {
     same->left = net.seq_num;
-    if (same->result == net.seq_num) judge_order(node, seen, *same);
+    const std::int64_t called_us = same->place.time_us;
+    if (same->result == net.seq_num) {
+      judge_order(node, seen, *same);
+      context_.left(node, link, seen.place, called_us, called_us, name_of(net));
+    }
     if (same->result && !calls.full()) judge_result(node, seen, *same);
     return;
   }
-  if (calls.size() == 0 || calls.full()) return;
+  if ((calls.size() == 0 && !context_.device(node).whole) || calls.full()) return;
   // What was sent before the log began may have waited.
   const bool whole = context_.options.start_cold || begun_[node];
   if (!asked) {
@@ -283,6 +289,14 @@ void Originals::judge_address(std::uint16_t node, const Observation& seen, const
     // Its base station may have handed it down (decision 126).
     context_.report("N6-OWN"_rule, context_.on_line(node, Severity::kFail), seen.place, node,
                     {"The sink sends " + name_of(net) + " by radio.", "Over serial.", {}});
+    return;
+  }
+  // Of a host in a capture it is weak (N8-LOOP): who writes there may not be the base station.
+  if (device.whole && link == Link::kSerial && route.onward == Route::Onward::kPeis) {
+    context_.report("N8-PEIS"_rule, Severity::kFail, seen.place, node,
+                    {"The base station sends " + name_of(net) + " down its serial line.",
+                     "Through PEIS to island " + number(net.dest.pid) + ".",
+                     {}});
     return;
   }
   if (link != Link::kRadio || route.onward != Route::Onward::kRadio) return;
@@ -423,7 +437,7 @@ void Originals::close(std::uint16_t node, std::size_t newest, std::int64_t now_u
 
 void Originals::finish(std::int64_t end_us, const InterfaceWatch& interfaces) {
   for (std::size_t node = 0; node < sent_.size(); ++node) {
-    judge_unsent(static_cast<std::uint16_t>(node), end_us, interfaces);
+    ends(static_cast<std::uint16_t>(node), end_us, interfaces);
     for (std::size_t i = sent_[node].size(); i-- > 0;) {
       close(static_cast<std::uint16_t>(node), i, end_us);
     }

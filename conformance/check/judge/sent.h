@@ -50,6 +50,8 @@ class Originals {
   void ack_given(std::uint16_t node, const Net& ack, std::int64_t now_us);
   /// Judges receive_ack, by a log.
   void told(std::uint16_t node, const Observation& seen, const machine::AckReceived& ack);
+  /// Judges what the node accepted and did not send, at the end of its life or of the run.
+  void ends(std::uint16_t node, std::int64_t end_us, const InterfaceWatch& interfaces);
   void finish(std::int64_t end_us, const InterfaceWatch& interfaces);
   /// Judges what a message of the node holds, whoever wrote it.
   void judge_content(std::uint16_t node, const Observation& seen, const Net& net);
@@ -62,7 +64,8 @@ class Originals {
     std::optional<std::uint16_t> result;  ///< The number that it returned.
     std::optional<std::uint16_t> left;    ///< That of the message.
     Place place;
-    bool free = false;  ///< It need not leave, or that is not seen.
+    bool free = false;                           ///< It need not leave, or that is not seen.
+    machine::Link line = machine::Link::kRadio;  ///< By which it leaves.
   };
 
   /// Judges the end of a message that is forgotten now: was its application notified?
@@ -70,7 +73,6 @@ class Originals {
   void judge_address(std::uint16_t node, const Observation& seen, const Net& net,
                      machine::Link link, machine::Address own);
   void judge_synaptic(std::uint16_t node, const Observation& seen, const Net& net);
-  void judge_unsent(std::uint16_t node, std::int64_t end_us, const InterfaceWatch& interfaces);
   void judge_result(std::uint16_t node, const Observation& seen, const Call& call);
   void judge_refused(std::uint16_t node, const Observation& seen, const Call& call);
   void judge_order(std::uint16_t node, const Observation& seen, const Call& later);

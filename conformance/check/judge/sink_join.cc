@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "conformance/check/links.h"
+
 namespace rubric::check {
 
 using machine::Admission;
@@ -34,6 +36,16 @@ std::uint16_t SinkJoins::island(std::uint16_t sink) const {
   return 0;
 }
 
+bool SinkJoins::is_own(std::uint16_t sink, machine::Address address, std::int64_t now_us) const {
+  if (address.devid != context_.device(sink).am) return false;
+  const auto its = [&](const SinkWatch& watch) {
+    const bool former = watch.former_island != 0 && address.pid == watch.former_island &&
+                        now_us <= context_.due_us(sink, watch.island_set_us);
+    return watch.device == sink && (address.pid == watch.island || former);
+  };
+  return std::ranges::any_of(sinks_, its);
+}
+
 PairWatch& SinkJoins::pair(SinkWatch& sink, std::uint16_t mote_am) {
   PairWatch& watch = sink.motes[mote_am];
   if (watch.set.empty()) {
@@ -54,21 +66,16 @@ void SinkJoins::begin_life(std::uint16_t sink) {
   watch->reported_us = -1;
 }
 
-void SinkJoins::ends(std::uint16_t sink, std::int64_t now_us) {
-  SinkWatch* const watch = find(sink);
-  if (watch == nullptr) return;
-  for (const auto& [am, pair] : watch->motes) unannounced(*watch, am, pair, now_us);
-}
-
 void SinkJoins::set_island(std::uint16_t sink, std::uint16_t island, const Place& at, bool sure) {
   SinkWatch* const watch = find(sink);
   if (watch == nullptr) return;
   const bool same = watch->island == island;
   watch->island_set = true;
   watch->island_sure = sure;
-  watch->island = island;
   if (same) return;
-  ends(sink, at.time_us);
+  watch->former_island = watch->island;
+  watch->island_set_us = at.time_us;
+  watch->island = island;
   if (listed(*watch) > 0) {
     context_.report("N9-MEMBERS"_rule, Severity::kNote, at, sink,
                     {"The island becomes " + number(island) + " while " + number(listed(*watch)) +
@@ -363,6 +370,68 @@ void SinkJoins::refuse_reply(SinkWatch& sink, PairWatch& watch, const Observatio
   next.owed = 0;
   next.owes_older = false;
   watch.set.assign(1, next);
+}
+
+void SinkJoins::ack_join(std::uint16_t, const Observation& seen, const AckJoin& ack,
+                         std::uint16_t surely_received_by) {
+  for (SinkWatch& sink : sinks_) {
+    const Device& device = context_.device(sink.device);
+    const bool sure = surely_received_by == sink.device;
+    if (!hears(device, seen, sure)) continue;
+    PairWatch& watch = pair(sink, ack.src.devid);
+    next_.clear();
+    bool admitted = false;
+    bool all_admit = true;
+    ReqId ignored = ReqId::kNone;
+    for (const SinkHypothesis& h : watch.set) {
+      SinkHypothesis heard = h;
+      const Admission accepted{ack.src.devid, ack.seq_num, ack.descriptor};
+      // Only its later acts show what a sink stored before the capture, or for a request that
+      // nobody saw.
+      const bool open = h.unknown || (h.pending && h.pending->descriptor == machine::Descriptor{});
+      if (open && heard.pending) heard.pending->descriptor = ack.descriptor;
+      if (open && !heard.pending) heard.pending = accepted;
+      JoinSink list = list_of(heard);
+      context_.actions.clear();
+      const bool stranger = ack.dest.devid != device.am || ack.src.devid != seen.frame.src ||
+                            ack.src.pid != ack.dest.pid;
+      const bool admits =
+          !stranger && machine::hear_ack_join(
+                           list, context_.join_context(device.am, sink.island, seen.place.time_us),
+                           ack.dest, ack.src, ack.seq_num, ack.descriptor, context_.actions);
+      take_list(list, heard);
+      if (stranger) ignored = "J6-SENDER"_rule;
+      if (!admits && !context_.actions.all().empty()) {
+        ignored = context_.actions.all()[0].requirement;
+      }
+      if (!sure || !admits || h.unknown) next_.push_back(h);
+      all_admit = all_admit && admits && !h.unknown;
+      if (!admits) continue;
+      admitted = true;
+      heard.unknown = false;
+      heard.owes_report = device.shows_line();
+      heard.owes_notice = device.application;
+      next_.push_back(heard);
+    }
+    watch.ack = seen.place;
+    watch.ack_whole_us = seen.place.time_us + air_us(seen);
+    watch.ignored_ack = admitted ? ReqId::kNone : ignored;
+    const bool waits = sink.serial_off && !device.whole;
+    if (sure && all_admit && !watch.report_due && device.shows_line() && !waits) {
+      watch.report_due = true;
+      ++sink.debts;
+    }
+    keep(sink, watch, next_, seen.place);
+  }
+}
+
+void SinkJoins::finish() {
+  std::vector<std::uint16_t> open;
+  for (auto& [am, unanswered] : unanswered_) {
+    if (unanswered.open) open.push_back(am);
+  }
+  std::sort(open.begin(), open.end());
+  for (const std::uint16_t am : open) close_unanswered(am, unanswered_[am]);
 }
 
 void SinkJoins::keep(SinkWatch& sink, PairWatch& watch, std::vector<SinkHypothesis>& next,

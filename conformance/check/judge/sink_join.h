@@ -7,9 +7,8 @@
 // small however many motes join at once (decision 106). Only the size of the list joins them: it is
 // taken as full when `members_max` pairs list their mote in every hypothesis.
 //
-// Decides: whether each join_reply answers a request (J3, J2-LISTED, N9-SET), whether each
-// serial_joined and moteJoined follows an ack_join that the sink had to accept (J6), and whether
-// one of these is missing. A missing reply that is surely owed is up to join_watch.h.
+// Decides: whether each join_reply answers a request (J3, J2-LISTED, N9-SET). A missing reply that
+// is surely owed is up to join_watch.h, serial_joined and moteJoined to announcements.h.
 //
 // How a set changes:
 // - It starts as `unknown`, or, with `start_cold`, as that of a sink that never heard of the mote.
@@ -90,8 +89,10 @@ struct PairWatch {
 struct SinkWatch {
   std::uint16_t device = kNobody;
   std::uint16_t island = 0;
-  bool island_set = false;                             ///< SET_ISLAND_ID was seen.
-  bool island_sure = true;                             ///< It surely arrived, if so.
+  bool island_set = false;  ///< SET_ISLAND_ID was seen.
+  bool island_sure = true;  ///< It surely arrived, if so.
+  std::uint16_t former_island = 0;
+  std::int64_t island_set_us = 0;
   std::unordered_map<std::uint16_t, PairWatch> motes;  ///< By AM address.
   bool has_clock = false;                              ///< From the last reply:
   std::uint32_t clock_ms = 0;
@@ -100,6 +101,7 @@ struct SinkWatch {
   std::int64_t behind_us = -1;    ///< Of the last reply whose clock fell behind: of a new life?
   std::uint32_t debts = 0;        ///< Pairs with something due.
   bool serial_off = false;        ///< Its serial line, by its application.
+  std::int64_t serial_on_us = 0;  ///< When it was switched on again.
   std::int64_t serial_us = -1;    ///< Its last frame on its serial line.
   bool behind = false;            ///< That one had to wait for the one before.
   std::int64_t reported_us = -1;  ///< The latest ack_join that it reported.
@@ -109,8 +111,6 @@ class SinkJoins {
  public:
   explicit SinkJoins(Context& context);
 
-  /// Judges what the sink owes when it loses its power.
-  void ends(std::uint16_t sink, std::int64_t now_us);
   void begin_life(std::uint16_t sink);
   void set_island(std::uint16_t sink, std::uint16_t island, const Place& at, bool sure);
   void request(std::uint16_t mote_device, const Observation& seen, const Request& request,
@@ -118,16 +118,9 @@ class SinkJoins {
   void reply(std::uint16_t sink, const Observation& seen, const Reply& reply);
   void ack_join(std::uint16_t mote_device, const Observation& seen, const AckJoin& ack,
                 std::uint16_t surely_received_by);
-  void report(std::uint16_t sink, const Observation& seen, const Net& net,
-              const SerialJoined& joined);
-  void told(std::uint16_t sink, const Observation& seen, const machine::MoteJoined& joined);
   /// Notes that the sink calls a mote gone, so that it lists it no more. (decision 124)
   void forgot(std::uint16_t sink, std::uint16_t mote_am);
-  /// Notes that the sink sent something at this time, so whatever it still owes is overdue.
-  void showed_life(std::uint16_t sink, std::int64_t now_us, bool on_serial);
-  /// Notes that the sink's serial line is switched on or off; while off, no report is due.
-  void serial_set(std::uint16_t sink, bool on);
-  void finish(std::int64_t end_us);
+  void finish();
   /// Notes that somebody else waits for the answer to the mote's last request.
   void settled(std::uint16_t mote_am) { unanswered_[mote_am].open = false; }
 
@@ -136,23 +129,26 @@ class SinkJoins {
 
   /// Returns the sink's island now; 0 if unknown.
   std::uint16_t island(std::uint16_t sink) const;
+  /// Returns whether `address` is the sink's, or was until so short a time ago that a message from
+  /// before SET_ISLAND_ID may have waited.
+  bool is_own(std::uint16_t sink, machine::Address address, std::int64_t now_us) const;
   SinkWatch* find(std::uint16_t sink);
+
+  // For the announcements, which change the same hypotheses.
+  std::vector<SinkWatch>& all() { return sinks_; }
+  PairWatch& pair(SinkWatch& sink, std::uint16_t mote_am);
+  void keep(SinkWatch& sink, PairWatch& watch, std::vector<SinkHypothesis>& next, const Place& at);
+  /// Returns how many motes the sink surely lists.
+  std::size_t listed(const SinkWatch& sink) const;
+  static std::string sentence(const SinkHypothesis& h);
 
  private:
   static constexpr std::size_t kSetMax = 256;
 
-  PairWatch& pair(SinkWatch& sink, std::uint16_t mote_am);
   /// Adds that the sink may have forgotten the mote, if so much silence was possible.
   void doubt(const Device& sink, PairWatch& watch, const Place& now) const;
   void judge_clock(SinkWatch& sink, const Observation& seen, const Reply& reply);
   void refuse_reply(SinkWatch& sink, PairWatch& watch, const Observation& seen, const Reply& reply);
-  void refuse_report(SinkWatch& sink, PairWatch& watch, const Place& at, std::uint16_t mote_am,
-                     bool notice);
-  void announce(SinkWatch& sink, const Place& at, machine::Address address,
-                const machine::Descriptor& descriptor, bool notice);
-  void keep(SinkWatch& sink, PairWatch& watch, std::vector<SinkHypothesis>& next, const Place& at);
-  std::size_t listed(const SinkWatch& sink) const;
-  static std::string sentence(const SinkHypothesis& h);
 
   struct Unanswered {
     Place request;
@@ -162,11 +158,6 @@ class SinkJoins {
     std::uint16_t sink = kNobody;
   };
   void close_unanswered(std::uint16_t mote_am, Unanswered& unanswered);
-  /// Reports each serial_joined that is overdue; `end`: no frame of the sink comes any more.
-  static constexpr std::int64_t kNotEnded = -1;
-  void overdue_reports(SinkWatch& sink, std::int64_t end_us);
-  void unannounced(const SinkWatch& sink, std::uint16_t mote_am, const PairWatch& watch,
-                   std::int64_t end_us);
   bool hears(const Device& device, const Observation& seen, bool sure) const;
 
   Context& context_;

@@ -19,9 +19,30 @@ constexpr std::size_t kBufferMax = 4;  // And so many channels (decision 122).
 }  // namespace
 
 SynapticWatch::SynapticWatch(Context& context, std::size_t devices)
-    : context_(context), nodes_(devices) {}
+    : context_(context), nodes_(devices) {
+  for (std::size_t device = 0; device < devices; ++device) {
+    if (context.device(static_cast<std::uint16_t>(device)).whole) {
+      begin(static_cast<std::uint16_t>(device));
+    }
+  }
+}
 
-void SynapticWatch::begin_life(std::uint16_t node) { nodes_[node] = Node{}; }
+void SynapticWatch::begin_life(std::uint16_t device) {
+  nodes_[device] = Node{};
+  if (context_.device(device).whole) begin(device);
+}
+
+void SynapticWatch::begin(std::uint16_t device) {
+  nodes_[device].logged = true;
+  nodes_[device].channels.period_ticks = context_.profile().synaptic_period_ticks;
+}
+
+// Returns whether a channel is from the node to itself; one of a namesake in another island is not.
+bool SynapticWatch::is_local(const Node& node, const machine::Channel& channel) {
+  const bool here = node.own.pid == 0 || channel.peer.pid == node.own.pid ||
+                    channel.peer.pid == machine::kLocalPid;
+  return channel.id >> 16 == (channel.id & 0xFFFF) && here;
+}
 
 SynapticWatch::Out* SynapticWatch::find(Node& node, machine::ChannelId id) {
   for (Out& out : node.outs) {
@@ -40,6 +61,7 @@ void SynapticWatch::called(std::uint16_t device, const Observation& seen, machin
   }
   node.logged = node.logged || creates;
   if (!node.logged && !steps) return;
+  node.own = own;
   if (steps) node.step_us = seen.place.time_us;
   machine::Config config;
   config.role = context_.device(device).role;
@@ -57,7 +79,8 @@ void SynapticWatch::called(std::uint16_t device, const Observation& seen, machin
     const machine::ChannelId id = machine::channel_id(create->peer.devid, config.id);
     std::erase_if(node.unknowns, [&](const Unknown& one) { return one.id == id; });
     const auto is = [&](const machine::Channel& channel) { return channel.id == id; };
-    if (std::ranges::none_of(node.channels.in, is)) node.perhaps.push_back(id);
+    const bool input = create->direction == machine::Direction::kIn;
+    if (input && std::ranges::none_of(node.channels.in, is)) node.perhaps.push_back(id);
   }
   note(node, before, seen.place.time_us);
   if (const auto* write = std::get_if<machine::WriteOutput>(seen.call)) {
@@ -89,6 +112,12 @@ void SynapticWatch::note(Node& node, const machine::Synaptic& before, std::int64
     if (out == nullptr && node.outs.size() < kChannelsMax) {
       out = &node.outs.emplace_back();
       out->id = channel.id;
+    }
+    if (out != nullptr && check::find(before, channel.id) == nullptr) {
+      out->local = is_local(node, channel);
+      const bool away = channel.peer.pid != node.own.pid && channel.peer.pid != machine::kLocalPid;
+      const bool sink = node.own.devid == context_.sink_am;
+      out->line = sink && away ? machine::Link::kSerial : machine::Link::kRadio;
     }
     if (out == nullptr) continue;
     out->disposed = false;
@@ -165,6 +194,13 @@ void SynapticWatch::sent(std::uint16_t device, const Observation& seen, const Ne
     return;
   }
   if (channel == nullptr) return;
+  if (channel->peer.pid != machine::kLocalPid && net.dest.pid != channel->peer.pid) {
+    context_.report(
+        "S2-SEND"_rule, Severity::kFail, seen.place, device,
+        {"Data of the channel to " + text_of(channel->peer) + " go to " + text_of(net.dest) + ".",
+         "The channel's destination.",
+         {}});
+  }
   if (net.body().size() != channel->size * std::size_t{4}) {
     context_.report("S2-CONTENT"_rule, Severity::kFail, seen.place, device,
                     {"Data of " + number(net.body().size() / 4) + " values for a channel of " +
@@ -191,6 +227,17 @@ void SynapticWatch::sent(std::uint16_t device, const Observation& seen, const Ne
          {}});
   } else if (out->sent_us >= 0) {
     context_.findings.kept("S2-TICK"_rule);
+  }
+  // The first tick is not long after the start, another a period after data that did not wait.
+  const std::int64_t off_us = context_.response_us() + context_.early_us();
+  const std::int64_t next_us = out->sent_us + machine::us_of(node.channels.period_ticks);
+  if (out->sent_us < out->begun_us) {
+    context_.left(device, out->line, seen.place, out->begun_us,
+                  out->begun_us + patience_us(device, true) - context_.response_us(),
+                  "the data to " + text_of(net.dest));
+  } else if (steady) {
+    context_.left(device, out->line, seen.place, next_us - off_us, next_us + off_us,
+                  "the data to " + text_of(net.dest));
   }
   const bool saves = channel->mode == machine::Mode::kPowerSave;
   // A write just before the last data may have missed its tick.
@@ -244,7 +291,7 @@ void SynapticWatch::note_inputs(Node& node, const machine::Synaptic& before, std
       in = &node.ins.emplace_back();
       in->id = channel.id;
       in->ended_us = now_us;
-      in->local = channel.id >> 16 == (channel.id & 0xFFFF);
+      in->local = is_local(node, channel);
     }
   }
   for (In& in : node.ins) {
@@ -258,15 +305,21 @@ void SynapticWatch::note_inputs(Node& node, const machine::Synaptic& before, std
   }
 }
 
-// Returns since when the node can send at all; -1 if it cannot, or that is unknown.
-std::int64_t SynapticWatch::able_since(std::uint16_t device) const {
+// Returns since when the node can send by `line`, or without one tell its application; -1 if it
+// cannot now, or that is unknown.
+std::int64_t SynapticWatch::able_since(std::uint16_t device, std::int64_t now_us,
+                                       std::optional<machine::Link> line) const {
   const Node& node = nodes_[device];
   const bool sink = context_.device(device).role == machine::Role::kSink;
-  const bool busy =
-      device < context_.run.nodes.size() && !context_.run.nodes[device].busy_us.empty();
-  if (!node.logged || !context_.run.has_time || node.on_us < 0 || busy) return -1;
+  if (!node.logged || !context_.run.has_time || node.on_us < 0) return -1;
   if (!sink && node.member_us < 0) return -1;
-  return std::max(node.on_us, sink ? 0 : node.member_us);
+  std::int64_t since = std::max(node.on_us, sink ? 0 : node.member_us);
+  for (const BusyTime& busy : context_.busy_times(device)) {
+    if (busy.line && busy.line != line) continue;
+    if (busy.from_us < now_us && now_us <= busy.to_us) return -1;
+    if (busy.to_us < now_us) since = std::max(since, busy.to_us);
+  }
+  return since;
 }
 
 // Returns how long a channel may be silent. Before its first tick a node's clock may be shifted.
@@ -311,12 +364,13 @@ void SynapticWatch::owed(std::uint16_t device, const Observation& seen, const Ne
 // after the next. Only a node whose log has its calls of channels surely shows such events.
 void SynapticWatch::settle_unknowns(std::uint16_t device, std::int64_t now_us) {
   Node& node = nodes_[device];
-  if (!node.logged || able_since(device) < 0) return;
+  const std::int64_t able_us = able_since(device, now_us, {});
+  if (!node.logged || able_us < 0) return;
   const Device& its = context_.device(device);
   if (!its.application || !its.hearing) return;
   for (Unknown& one : node.unknowns) {
-    const std::int64_t since = std::max(one.place.time_us, node.step_us);
-    if (one.told || now_us - since <= patience_us(device, true)) continue;
+    const std::int64_t since = std::max({one.place.time_us, node.step_us, able_us});
+    if (one.told || now_us - since <= patience_us(device, false)) continue;
     one.told = true;                                      // Said once.
     const bool open = node.unknowns.size() > kTickCrowd;  // A buffer may have been full.
     context_.report("S5-UNKNOWN"_rule, open ? Severity::kInconclusive : Severity::kFail, one.place,
@@ -355,7 +409,8 @@ void SynapticWatch::told(std::uint16_t device, const Observation& seen,
   const bool fresh = data.status == machine::DataStatus::kNew;
   const bool knows = context_.device(device).hearing && !in->local;
   const std::int64_t since = std::max(in->told_us, in->begun_us);
-  // Data that came close to a tick may count for this one or the next.
+  // Data that came close to a tick may count for this one or the next; a whole log has the order.
+  const std::int64_t apart = context_.device(device).whole ? 1 : context_.early_us();
   const auto came = [&](std::int64_t from, std::int64_t to) {
     for (std::size_t i = 0; i < in->data_us.size(); ++i) {
       const std::int64_t at = in->data_us[i];
@@ -363,6 +418,13 @@ void SynapticWatch::told(std::uint16_t device, const Observation& seen,
     }
     return false;
   };
+  if (fresh && in->local && news_of_nothing(node, *in)) {
+    context_.report("S3-OLD"_rule, Severity::kFail, seen.place, device,
+                    {"synData_received of a power-save channel from the node to itself has status "
+                     "new, though nothing was written since the last.",
+                     "Status old without new data.",
+                     {}});
+  }
   // The first signal may be about data that came before the start.
   const bool early = in->before && in->told_us < in->begun_us;
   if (knows && fresh && !early && !came(since - response, now)) {
@@ -371,7 +433,7 @@ void SynapticWatch::told(std::uint16_t device, const Observation& seen,
                          ms_text(now - since + response) + ".",
                      "Status old without new data.",
                      {}});
-  } else if (knows && !fresh && came(since + context_.early_us(), now - response)) {
+  } else if (knows && !fresh && came(since + apart, now - response)) {
     context_.report(
         "S2-SIGNAL"_rule, Severity::kFail, seen.place, device,
         {"synData_received has status old, though data came since the last.", "Status new.", {}});
@@ -393,6 +455,18 @@ void SynapticWatch::told(std::uint16_t device, const Observation& seen,
   in->before = false;
   in->ticks.add(now);
   judge_grid(device, seen, in->ticks);
+}
+
+// Returns whether the node's own output has nothing new for this input since its last signal.
+bool SynapticWatch::news_of_nothing(Node& node, const In& in) {
+  const Out* const out = find(node, in.id);
+  const machine::Channel* const channel = check::find(node.channels, in.id);
+  if (out == nullptr || channel == nullptr || channel->mode != machine::Mode::kPowerSave) {
+    return false;
+  }
+  const std::int64_t period_us = machine::us_of(node.channels.period_ticks);
+  return in.told_us - period_us > std::max(in.begun_us, out->begun_us) &&
+         in.told_us - context_.response_us() > out->written_us;
 }
 
 //= S6-CLOCK: Starting a channel again does not shift the clock of the others.
@@ -437,14 +511,13 @@ bool SynapticWatch::crowded(std::uint16_t device, std::int64_t from_us, std::int
   return others > kTickCrowd || nodes_[device].outs.size() > kBufferMax;
 }
 
-void SynapticWatch::settle_outputs(std::uint16_t device, std::int64_t now_us,
-                                   std::int64_t able_us) {
+void SynapticWatch::settle_outputs(std::uint16_t device, std::int64_t now_us) {
   Node& node = nodes_[device];
   for (Out& out : node.outs) {
+    const std::int64_t able_us = able_since(device, now_us, out.line);
     // Nothing is sent to the node itself, by whichever name (N4-SELF).
-    const std::uint16_t dest = out.id & 0xFFFF;
-    const bool self = dest == out.id >> 16 || dest == machine::kLocalDevid;
-    if (out.begun_us < 0 || self) continue;
+    const bool self = out.local || (out.id & 0xFFFF) == machine::kLocalDevid;
+    if (out.begun_us < 0 || self || able_us < 0) continue;
     const auto channel = std::find_if(node.channels.out.begin(), node.channels.out.end(),
                                       [&](const machine::Channel& c) { return c.id == out.id; });
     if (channel == node.channels.out.end()) continue;
@@ -476,11 +549,21 @@ void SynapticWatch::settle_outputs(std::uint16_t device, std::int64_t now_us,
   }
 }
 
+// What was due before a line or the application was taken is judged as of then.
 void SynapticWatch::settle(std::uint16_t device, std::int64_t now_us) {
-  const std::int64_t able_us = able_since(device);
-  if (able_us < 0) return;
-  settle_outputs(device, now_us, able_us);
+  const std::int64_t before_us = nodes_[device].settled_us;
+  for (const BusyTime& busy : context_.busy_times(device)) {
+    if (before_us < busy.from_us && busy.from_us < now_us) settle_at(device, busy.from_us);
+  }
+  settle_at(device, now_us);
+  nodes_[device].settled_us = now_us;
+}
+
+void SynapticWatch::settle_at(std::uint16_t device, std::int64_t now_us) {
+  settle_outputs(device, now_us);
   settle_unknowns(device, now_us);
+  const std::int64_t able_us = able_since(device, now_us, {});
+  if (able_us < 0) return;
   Node& node = nodes_[device];
   if (!context_.device(device).application) return;
   for (In& in : node.ins) {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "conformance/check/judge/context.h"
@@ -28,6 +29,8 @@ class SynapticWatch {
   void owed(std::uint16_t node, const Observation& seen, const Net& net);
   /// Judges synData_received.
   void told(std::uint16_t node, const Observation& seen, const machine::SynDataReceived& data);
+  /// Judges what the node owes until now, by its log.
+  void settle(std::uint16_t node, std::int64_t now_us);
   void finish(std::int64_t end_us);
   /// Judges synaptic data, a sound net_msg, that `node` sends.
   void sent(std::uint16_t node, const Observation& seen, const Net& net);
@@ -44,9 +47,11 @@ class SynapticWatch {
   };
   struct Out {
     machine::ChannelId id = 0;
-    std::int64_t begun_us = -1;  ///< Running since; -1: it does not run.
-    std::int64_t wrote_us = -1;  ///< A value that is to be sent.
-    std::int64_t waits_us = -1;  ///< Silence counts from here.
+    bool local = false;                          ///< To the node itself.
+    machine::Link line = machine::Link::kRadio;  ///< By which its data leave.
+    std::int64_t begun_us = -1;                  ///< Running since; -1: it does not run.
+    std::int64_t wrote_us = -1;                  ///< A value that is to be sent.
+    std::int64_t waits_us = -1;                  ///< Silence counts from here.
     Ticks ticks;
     std::int64_t sent_us = -1;     ///< The last data; -1: none since it was started.
     std::int64_t written_us = -1;  ///< The last write that changed something.
@@ -85,7 +90,9 @@ class SynapticWatch {
   struct Node {
     std::vector<Unknown> unknowns;
     std::vector<machine::ChannelId> perhaps;  ///< Calls that the model refused; who knows.
-    bool logged = false;                      ///< Its log creates channels.
+    bool logged = false;                      ///< Its log has the calls that create channels.
+    machine::Address own;                     ///< As known at the last call.
+    std::int64_t settled_us = -1;             ///< What was owed until then is judged.
     std::int64_t member_us = -1;              ///< A mote: joined since; a sink always is.
     std::int64_t on_us = 0;                   ///< Its radio is on since; -1: it is off.
     std::int64_t restart_us = -1;             ///< A channel was started while others ran.
@@ -99,11 +106,15 @@ class SynapticWatch {
   Out* find(Node& node, machine::ChannelId id);
   static In* find_in(Node& node, machine::ChannelId id);
   void note_inputs(Node& node, const machine::Synaptic& before, std::int64_t now_us);
-  std::int64_t able_since(std::uint16_t device) const;
+  void begin(std::uint16_t device);
+  static bool is_local(const Node& node, const machine::Channel& channel);
+  bool news_of_nothing(Node& node, const In& in);
+  std::int64_t able_since(std::uint16_t device, std::int64_t now_us,
+                          std::optional<machine::Link> line) const;
   std::int64_t patience_us(std::uint16_t device, bool first) const;
-  void settle(std::uint16_t device, std::int64_t now_us);
+  void settle_at(std::uint16_t device, std::int64_t now_us);
   void settle_unknowns(std::uint16_t device, std::int64_t now_us);
-  void settle_outputs(std::uint16_t device, std::int64_t now_us, std::int64_t able_us);
+  void settle_outputs(std::uint16_t device, std::int64_t now_us);
   bool crowded(std::uint16_t device, std::int64_t from_us, std::int64_t to_us) const;
   void judge_grid(std::uint16_t device, const Observation& seen, const Ticks& ticks);
   void note(Node& node, const machine::Synaptic& before, std::int64_t now_us);

@@ -23,6 +23,7 @@ constexpr std::uint64_t kSeeds = 4;
 constexpr std::uint64_t kMixedSeeds = 60;
 
 struct Count {
+  bool different = true;  ///< Whether to count different frames; a thousand seeds have too many.
   std::uint64_t judgements = 0;
   FrameSet frames;
   std::uint64_t fails = 0;
@@ -36,7 +37,7 @@ void judge_one(const lawful::Traffic& traffic, const std::string& recorder, cons
   const check::Run run = reader.finish();
   const Report report = judge(run, options);
   ++count.judgements;
-  add_frames(run, count.frames);
+  if (count.different) add_frames(run, count.frames);
   for (const Finding& finding : report.findings) {
     const bool fails = finding.severity == Severity::kFail;
     count.fails += fails ? 1 : 0;
@@ -88,6 +89,10 @@ TEST(Legal, NoAlarmComesBack) {
       {"mixed", 584, "steps_often"},                // A step after a damaged frame.
       {"mixed", 275, "drops"},           // A repeat after a message; the join was dropped.
       {"two_sinks_first", 14, "exact"},  // A PC's message on the other island's line.
+      {"in_full", 195, "exact"},         // A buffer filled by messages that only passed through.
+      {"host_loops_radiated", 89, "exact"},    // A frame taken for that of the other sink.
+      {"island_change_forgets", 91, "exact"},  // An ack of before SET_ISLAND_ID.
+      {"mixed", 2754, "exact"},  // A repeat of an ack_join whose first was not captured.
   };
   Count count;
   for (const Alarm& one : kAlarms) judge_both(one.variant, one.seed, one.recorder, count);
@@ -121,6 +126,7 @@ std::pair<std::uint64_t, std::uint64_t> seeds() {
 TEST(Legal, NothingFailsHoweverItIsRecorded) {
   const auto [first, last] = seeds();
   Count count;
+  count.different = first == last;
   for (const lawful::Recorder& recorder : lawful::recorders()) {
     const std::string how(recorder.name);
     for (std::uint64_t seed = first; seed <= last; ++seed) {

@@ -67,6 +67,38 @@ TEST(Owed, AnAckAtTheEndOfALog) {
   EXPECT_EQ(of_mote(kJoins + to_mote(true) + kDelivers), "T2-ACK");
 }
 
+// The same in a log that is whole, up to its end.
+std::string of_whole(const std::string& log, int until_ms) {
+  std::string head = kMote;
+  head.replace(head.find(" iut"), 4, " iut whole");
+  const std::string end = "   @0.." + std::to_string(until_ms) + " m5 !> * *\n";
+  return found(head + log + end, Severity::kInconclusive);
+}
+
+TEST(Owed, AWholeLogSaysWhenItEnds) {
+  const std::string ack = "am(28 x000b0002000b000500007706090517006400)";
+  EXPECT_EQ(of_whole(kJoins + to_mote(), 1200), "");
+  EXPECT_EQ(of_whole(kJoins + to_mote(), 1400), "N5-DELIVER");
+  const std::string taken = kJoins + to_mote(true) + kDelivers;
+  EXPECT_EQ(of_whole(taken, 1400), "T2-ACK");
+  EXPECT_EQ(of_whole(taken + mote(1200, "> rA am=5->2 " + ack), 1400), "");
+  EXPECT_EQ(of_whole(taken + mote(1400, "> rA am=5->2 " + ack), 1900), "T2-ACK") << "Too late.";
+}
+
+TEST(Owed, ALineKeepsTheOrderInWhichItAccepted) {
+  const std::string send =
+      mote(1000, "< app send(11:2 mockup 0 xbeef)") + mote(1000, "> app send_result(100)");
+  const std::string sent = "> rA am=5->2 am(28 x000b0002000b0005000064040305beef)";
+  const std::string ack = "> rA am=5->2 am(28 x000b0002000b000500007706090517006400)";
+  const std::string hears = mote(1400, "< rA am=2->5 " + net("0005", "0002", true)) +
+                            mote(1400, "> app received(11:2 mockup xbeef)");
+  const std::string begin =
+      kJoins + mote(900, "< rA busy") + send + hears + mote(1800, "< rA idle");
+  EXPECT_EQ(of_whole(begin + mote(1800, sent) + mote(1802, ack), 2500), "");
+  EXPECT_EQ(of_whole(begin + mote(1800, ack) + mote(1802, sent), 2500), "N2-ORDER");
+  EXPECT_EQ(of_whole(kJoins + mote(900, "< rA busy") + send + mote(1010, sent), 1500), "N2-BUSY");
+}
+
 TEST(Owed, OutsideNothingIsHeard) {
   const std::string early = mote(1000, "> app received(11:2 mockup xbeef)");
   EXPECT_EQ(of_mote(to_mote() + early), "J11-HEAR");

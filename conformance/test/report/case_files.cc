@@ -117,6 +117,15 @@ std::string case_rtr(const CaseRun& one) {
   if (one.seed != 0) file.header({trace::SeedHeader{one.seed}, {}, {}});
   file.cases.push_back(one.result.log);
   file.cases.back().name = one.name;
+  for (const trace::NodeHeader& node : one.nodes) {
+    if (!node.iut || !one.whole) continue;
+    Line end;  // Nothing else came, until then.
+    end.time = {trace::Time::Base::kStart, 0, static_cast<std::int64_t>(one.result.length), {}};
+    end.node = node.name;
+    end.op = Op::kMustNot;
+    end.link = "*";
+    file.cases.back().add(std::move(end));
+  }
   return trace::print(file);
 }
 

@@ -1,8 +1,6 @@
-// SinkJoins: ack_join at a sink, and the announcements that follow. See sink_join.h.
-#include <algorithm>
+#include "conformance/check/judge/announcements.h"
 
-#include "conformance/check/judge/sink_join.h"
-#include "conformance/check/links.h"
+#include <algorithm>
 
 namespace rubric::check {
 namespace {
@@ -12,63 +10,10 @@ constexpr std::int64_t kFrameUs = 12'000;  // A whole message on a serial line o
 }  // namespace
 
 using machine::Admission;
-using machine::JoinSink;
 
-void SinkJoins::ack_join(std::uint16_t, const Observation& seen, const AckJoin& ack,
-                         std::uint16_t surely_received_by) {
-  for (SinkWatch& sink : sinks_) {
-    const Device& device = context_.device(sink.device);
-    const bool sure = surely_received_by == sink.device;
-    if (!hears(device, seen, sure)) continue;
-    PairWatch& watch = pair(sink, ack.src.devid);
-    next_.clear();
-    bool admitted = false;
-    bool all_admit = true;
-    ReqId ignored = ReqId::kNone;
-    for (const SinkHypothesis& h : watch.set) {
-      SinkHypothesis heard = h;
-      const Admission accepted{ack.src.devid, ack.seq_num, ack.descriptor};
-      // Only its later acts show what a sink stored before the capture, or for a request that
-      // nobody saw.
-      const bool open = h.unknown || (h.pending && h.pending->descriptor == machine::Descriptor{});
-      if (open && heard.pending) heard.pending->descriptor = ack.descriptor;
-      if (open && !heard.pending) heard.pending = accepted;
-      JoinSink list = list_of(heard);
-      context_.actions.clear();
-      const bool stranger = ack.dest.devid != device.am || ack.src.devid != seen.frame.src ||
-                            ack.src.pid != ack.dest.pid;
-      const bool admits =
-          !stranger && machine::hear_ack_join(
-                           list, context_.join_context(device.am, sink.island, seen.place.time_us),
-                           ack.dest, ack.src, ack.seq_num, ack.descriptor, context_.actions);
-      take_list(list, heard);
-      if (stranger) ignored = "J6-SENDER"_rule;
-      if (!admits && !context_.actions.all().empty()) {
-        ignored = context_.actions.all()[0].requirement;
-      }
-      if (!sure || !admits || h.unknown) next_.push_back(h);
-      all_admit = all_admit && admits && !h.unknown;
-      if (!admits) continue;
-      admitted = true;
-      heard.unknown = false;
-      heard.owes_report = device.shows_line();
-      heard.owes_notice = device.application;
-      next_.push_back(heard);
-    }
-    watch.ack = seen.place;
-    watch.ack_whole_us = seen.place.time_us + air_us(seen);
-    watch.ignored_ack = admitted ? ReqId::kNone : ignored;
-    if (sure && all_admit && !watch.report_due && device.shows_line() && !sink.serial_off) {
-      watch.report_due = true;
-      ++sink.debts;
-    }
-    keep(sink, watch, next_, seen.place);
-  }
-}
-
-void SinkJoins::report(std::uint16_t sink_device, const Observation& seen, const Net& net,
-                       const SerialJoined& joined) {
-  SinkWatch* const sink = find(sink_device);
+void Announcements::report(std::uint16_t sink_device, const Observation& seen, const Net& net,
+                           const SerialJoined& joined) {
+  SinkWatch* const sink = joins_.find(sink_device);
   if (sink == nullptr) return;
   if (sink->island == 0) sink->island = joined.address.pid;
   const machine::Address to{joined.address.pid, machine::kNullDevid};
@@ -83,16 +28,19 @@ void SinkJoins::report(std::uint16_t sink_device, const Observation& seen, const
   announce(*sink, seen.place, joined.address, joined.descriptor, false);
 }
 
-void SinkJoins::told(std::uint16_t sink_device, const Observation& seen,
-                     const machine::MoteJoined& joined) {
-  SinkWatch* const sink = find(sink_device);
-  if (sink != nullptr) announce(*sink, seen.place, joined.address, joined.descriptor, true);
+void Announcements::told(std::uint16_t sink_device, const Observation& seen,
+                         const machine::MoteJoined& joined) {
+  SinkWatch* const sink = joins_.find(sink_device);
+  if (sink == nullptr) return;
+  const std::uint16_t am = joined.address.devid;
+  if (context_.device(sink_device).whole) forgets(sink_device, am, seen.place.time_us);
+  announce(*sink, seen.place, joined.address, joined.descriptor, true);
 }
 
 // Judges serial_joined, or moteJoined (`notice`), of a mote.
-void SinkJoins::announce(SinkWatch& sink, const Place& at, machine::Address address,
-                         const machine::Descriptor& descriptor, bool notice) {
-  PairWatch& watch = pair(sink, address.devid);
+void Announcements::announce(SinkWatch& sink, const Place& at, machine::Address address,
+                             const machine::Descriptor& descriptor, bool notice) {
+  PairWatch& watch = joins_.pair(sink, address.devid);
   const ReqId content = notice ? "J6-ADD"_rule : "J6-CONTENT"_rule;
   if (address.pid != sink.island) {
     const ReqId rule = sink.island_set ? "N9-SET"_rule : content;
@@ -127,6 +75,9 @@ void SinkJoins::announce(SinkWatch& sink, const Place& at, machine::Address addr
   if (watch.report_due && !notice) {
     watch.report_due = false;
     --sink.debts;
+    context_.left(sink.device, machine::Link::kSerial, at, watch.ack_whole_us,
+                  watch.ack_whole_us + context_.response_us(),
+                  "serial_joined of mote " + number(address.devid));
   }
   if (next_.empty()) {
     refuse_report(sink, watch, at, address.devid, notice);
@@ -149,8 +100,8 @@ void SinkJoins::announce(SinkWatch& sink, const Place& at, machine::Address addr
     context_.findings.kept(content);
     context_.findings.kept(notice ? "J6-ADD"_rule : "J6-REPORT"_rule);
   }
-  keep(sink, watch, next_, at);
-  const std::size_t members = listed(sink);
+  joins_.keep(sink, watch, next_, at);
+  const std::size_t members = joins_.listed(sink);
   if (members > context_.profile().members_max) {
     context_.report("J3-FULL"_rule, Severity::kWeak, at, sink.device,
                     {"Member " + number(members) + " of the sink is announced.",
@@ -159,13 +110,13 @@ void SinkJoins::announce(SinkWatch& sink, const Place& at, machine::Address addr
   }
 }
 
-void SinkJoins::refuse_report(SinkWatch& sink, PairWatch& watch, const Place& at,
-                              std::uint16_t mote_am, bool notice) {
+void Announcements::refuse_report(SinkWatch& sink, PairWatch& watch, const Place& at,
+                                  std::uint16_t mote_am, bool notice) {
   const SinkHypothesis& h = watch.set.back();
   Said said;
   for (auto it = watch.set.rbegin(); it != watch.set.rend(); ++it) {
-    said.hypotheses.push_back(
-        {sentence(*it), "No announcement of this mote.", "The mote is announced as a new member."});
+    said.hypotheses.push_back({SinkJoins::sentence(*it), "No announcement of this mote.",
+                               "The mote is announced as a new member."});
   }
   const std::string what = notice ? "moteJoined" : "serial_joined";
   ReqId rule = "J6-ADD"_rule;
@@ -199,35 +150,46 @@ void SinkJoins::refuse_report(SinkWatch& sink, PairWatch& watch, const Place& at
   context_.report(rule, severity, at, sink.device, std::move(said));
   SinkHypothesis next = h;
   next.unknown = false;
-  if (!next.member) next.member = Admission{mote_am, watch.request_seq, {}};
+  const std::uint16_t seq_num = next.pending ? next.pending->seq_num : watch.request_seq;
+  if (!next.member) next.member = Admission{mote_am, seq_num, {}};
+  next.pending.reset();  // It heard an ack_join that the capture does not have.
   watch.set.assign(1, next);
 }
 
-void SinkJoins::showed_life(std::uint16_t sink_device, std::int64_t now_us, bool on_serial) {
-  SinkWatch* const sink = find(sink_device);
+void Announcements::showed_life(std::uint16_t sink_device, std::int64_t now_us, bool on_serial) {
+  SinkWatch* const sink = joins_.find(sink_device);
   if (sink == nullptr || !on_serial || now_us < 0) return;
   sink->behind = sink->serial_us >= 0 && now_us - sink->serial_us <= kFrameUs;
   sink->serial_us = now_us;
   if (sink->debts > 0) overdue_reports(*sink, kNotEnded);
 }
 
-void SinkJoins::serial_set(std::uint16_t sink_device, bool on) {
-  SinkWatch* const sink = find(sink_device);
+void Announcements::serial_set(std::uint16_t sink_device, bool on, std::int64_t now_us) {
+  SinkWatch* const sink = joins_.find(sink_device);
   if (sink == nullptr) return;
   sink->serial_off = !on;
-  if (on) return;
+  if (on) sink->serial_on_us = now_us;
+  if (on || context_.device(sink_device).whole) return;  // What it owes waits until it is on again.
   for (auto& [am, watch] : sink->motes) watch.report_due = false;
   sink->debts = 0;
 }
 
-void SinkJoins::overdue_reports(SinkWatch& sink, std::int64_t end_us) {
+void Announcements::overdue(std::uint16_t sink_device, std::int64_t now_us) {
+  SinkWatch* const sink = joins_.find(sink_device);
+  if (sink != nullptr && sink->debts > 0) overdue_reports(*sink, now_us);
+}
+
+void Announcements::overdue_reports(SinkWatch& sink, std::int64_t end_us) {
   std::vector<std::uint16_t> due;
+  if (sink.serial_off) return;
   const bool end = end_us != kNotEnded;
   const bool whole = context_.device(sink.device).whole;
   const std::int64_t now_us = whole && end ? end_us : sink.serial_us;
   for (const auto& [am, watch] : sink.motes) {
     const std::int64_t due_us =
-        context_.due_us(sink.device, watch.ack_whole_us) + (sink.behind ? kFrameUs : 0);
+        context_.due_us(sink.device, std::max(watch.ack_whole_us, sink.serial_on_us),
+                        machine::Link::kSerial) +
+        (sink.behind ? kFrameUs : 0);
     if (watch.report_due && now_us > due_us) due.push_back(am);
   }
   std::sort(due.begin(), due.end(), [&](std::uint16_t a, std::uint16_t b) {
@@ -243,7 +205,7 @@ void SinkJoins::overdue_reports(SinkWatch& sink, std::int64_t end_us) {
     const auto owes = [](const SinkHypothesis& h) { return !h.unknown && h.owes_report; };
     if (!std::all_of(watch.set.begin(), watch.set.end(), owes)) continue;
     // With a full list, even of members from before the capture, nothing is owed.
-    if (listed(sink) >= context_.profile().members_max) continue;
+    if (joins_.listed(sink) >= context_.profile().members_max) continue;
     context_.report(
         "J6-REPORT"_rule,
         room && !context_.who.damaged(watch.ack.time_us, now_us)
@@ -261,14 +223,14 @@ void SinkJoins::overdue_reports(SinkWatch& sink, std::int64_t end_us) {
 }
 
 // Reports an ack_join that by a log the sink surely got and its application never heard of.
-void SinkJoins::unannounced(const SinkWatch& sink, std::uint16_t mote_am, const PairWatch& watch,
-                            std::int64_t end_us) {
+void Announcements::unannounced(const SinkWatch& sink, std::uint16_t mote_am,
+                                const PairWatch& watch, std::int64_t end_us) {
   const Device& device = context_.device(sink.device);
   if (!device.hearing || !device.application || !watch.ack.timed() || watch.set.empty()) return;
   if (end_us <= watch.ack_whole_us + context_.response_us()) return;
   const auto owes = [](const SinkHypothesis& h) { return !h.unknown && h.owes_notice; };
   if (!std::all_of(watch.set.begin(), watch.set.end(), owes)) return;
-  if (listed(sink) > context_.profile().members_max) return;
+  if (joins_.listed(sink) > context_.profile().members_max) return;
   context_.report("J6-ADD"_rule, Severity::kFail, watch.ack, sink.device,
                   {"The sink was given the ack_join of mote " + number(mote_am) +
                        " with the number that it had answered, and does not list the mote: no "
@@ -278,17 +240,22 @@ void SinkJoins::unannounced(const SinkWatch& sink, std::uint16_t mote_am, const 
                    {}});
 }
 
-void SinkJoins::finish(std::int64_t end_us) {
-  for (SinkWatch& sink : sinks_) {
+void Announcements::ends(std::uint16_t sink_device, std::int64_t now_us) {
+  SinkWatch* const sink = joins_.find(sink_device);
+  if (sink == nullptr) return;
+  for (const auto& [am, watch] : sink->motes) unannounced(*sink, am, watch, now_us);
+}
+
+void Announcements::forgets(std::uint16_t sink_device, std::uint16_t mote_am, std::int64_t now_us) {
+  SinkWatch* const sink = joins_.find(sink_device);
+  if (sink != nullptr) unannounced(*sink, mote_am, joins_.pair(*sink, mote_am), now_us);
+}
+
+void Announcements::finish(std::int64_t end_us) {
+  for (SinkWatch& sink : joins_.all()) {
     overdue_reports(sink, end_us);
     for (const auto& [am, watch] : sink.motes) unannounced(sink, am, watch, end_us);
   }
-  std::vector<std::uint16_t> open;
-  for (auto& [am, unanswered] : unanswered_) {
-    if (unanswered.open) open.push_back(am);
-  }
-  std::sort(open.begin(), open.end());
-  for (const std::uint16_t am : open) close_unanswered(am, unanswered_[am]);
 }
 
 }  // namespace rubric::check

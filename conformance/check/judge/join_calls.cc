@@ -1,0 +1,218 @@
+#include "conformance/check/judge/join_calls.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace rubric::check {
+
+using machine::JoinMote;
+using Phase = JoinMote::Phase;
+
+JoinCalls::JoinCalls(Context& context, MoteJoins& motes, std::size_t devices)
+    : context_(context), motes_(motes), calls_(devices) {
+  // Only a log that has join calls can show that there was none.
+  for (std::size_t i = 0; i < context.run.seen.size(); ++i) {
+    const Observation& seen = context.run.seen[i];
+    const std::uint16_t node = context.who.marks[i].device;
+    if (seen.kind != Observation::Kind::kCall || node == kNobody) continue;
+    if (std::holds_alternative<machine::JoinIsland>(*seen.call)) calls_[node].logged = true;
+  }
+}
+
+void JoinCalls::begin_life(std::uint16_t mote) {
+  const bool logged = calls_[mote].logged;
+  calls_[mote] = Calls{};
+  calls_[mote].logged = logged;
+}
+
+void JoinCalls::request(std::uint16_t mote, const Observation& seen, const Request& request) {
+  const Calls& calls = calls_[mote];
+  const std::vector<MoteHypothesis>& set = std::as_const(motes_).set(mote);
+  if (calls.logged && calls.open == 0 && set.size() == 1 && !set[0].unknown &&
+      set[0].join.phase == Phase::kOutside) {
+    context_.report("J1-CALLED"_rule, Severity::kFail, seen.place, mote,
+                    {"A join_request without a joinIsland call.", "Silence.", {}});
+  }
+  // Only the last call is open; what an earlier one left in a buffer cannot have waited for the
+  // line.
+  const std::int64_t called_us = calls.called.time_us;
+  if (!calls.last || calls.open != 1 || seen.node.empty() ||
+      context_.due_us(mote, called_us) != called_us + context_.response_us()) {
+    return;
+  }
+  if (calls.last->descriptor == request.descriptor) {
+    context_.findings.kept("J1-REQUEST"_rule);
+  } else {
+    context_.report("J1-REQUEST"_rule, Severity::kFail, seen.place, mote,
+                    {"A join_request has another descriptor than the joinIsland call before it.",
+                     "The descriptor of the call.",
+                     {}});
+  }
+}
+
+void JoinCalls::called(std::uint16_t mote, const Observation& seen,
+                       const machine::JoinIsland& call) {
+  Calls& calls = calls_[mote];
+  judge_over(mote, seen.place.time_us);
+  // A member, and one whose earlier call is open, refuses at once.
+  calls.refusable =
+      calls.open > 0 || std::ranges::any_of(motes_.set(mote), [](const MoteHypothesis& h) {
+        return h.unknown || h.join.phase != Phase::kOutside;
+      });
+  ++calls.open;
+  calls.last = call;
+  calls.called = seen.place;
+}
+
+void JoinCalls::told(std::uint16_t mote, const Observation& seen, const machine::Joined& joined) {
+  Calls& calls = calls_[mote];
+  std::vector<MoteHypothesis>& set = motes_.set(mote);
+  const std::int64_t now = seen.place.time_us;
+  if (calls.logged && calls.open == 0) {
+    context_.report("J5-ONCE"_rule, Severity::kFail, seen.place, mote,
+                    {std::string("joined(") + (joined.success ? "SUCCESS" : "FAIL") +
+                         ") although no joinIsland call is open.",
+                     "One joined event for each call.",
+                     {}});
+  }
+  if (calls.open > 0) --calls.open;
+  const std::vector<MoteHypothesis> before = set;
+  Said said;
+  said.hypotheses = motes_.explanations(before, "");
+  if (joined.success) {
+    std::erase_if(set, [&](const MoteHypothesis& h) {
+      if (h.unaccepted) return true;
+      return !h.unknown && (h.join.phase != Phase::kMember || h.join.address != joined.address);
+    });
+    const auto joined_before = [&](const MoteHypothesis& h) {
+      return !h.unknown && h.told && calls.called.time_us > h.accepted_us;
+    };
+    if (calls.last && !set.empty() && std::ranges::all_of(set, joined_before)) {
+      context_.report("J8-JOINED"_rule, Severity::kFail, seen.place, mote,
+                      {"joined(" + text_of(joined.address) +
+                           ", SUCCESS) for a call of joinIsland while the mote was a member.",
+                       "joined(FAIL), at once.",
+                       {}});
+      return;
+    }
+    for (MoteHypothesis& h : set) h.told = true;
+    if (!set.empty()) {
+      context_.findings.kept("J5-SUCCESS"_rule);
+      return;
+    }
+    const MoteHypothesis& h = before.back();
+    const bool member = h.join.phase == Phase::kMember;
+    said.text = "joined(" + text_of(joined.address) + ", SUCCESS) is signalled" +
+                (member ? ", but the reply gave " + text_of(h.join.address) + "."
+                        : " before a reply was accepted.");
+    said.expected =
+        member ? "The address of the reply." : "Nothing, or FAIL after the last request.";
+    const bool foreign = joined.address.devid != context_.device(mote).am;
+    const bool wrong = h.unaccepted || (motes_.stray_offer(mote) && foreign);
+    context_.report(
+        member ? "J5-SUCCESS"_rule : "J5-ACCEPT"_rule,
+        member || wrong ? Severity::kFail : context_.without(kNobody, h.first_request_us, now),
+        seen.place, mote, std::move(said));
+    set = before;
+    return;
+  }
+  // FAIL at once is right for a call while joined (J8-JOINED) or while another call runs.
+  const bool refused =
+      calls.last && calls.refusable && now - calls.called.time_us <= context_.response_us();
+  const auto fits = [&](const MoteHypothesis& h) {
+    return h.unknown || h.join.phase == Phase::kOutside || motes_.may_have_failed(h, now);
+  };
+  if (refused || std::any_of(before.begin(), before.end(), fits)) {
+    const auto late = [&](const MoteHypothesis& h) {
+      return !h.unknown && h.join.phase == Phase::kJoining &&
+             now > context_.due_us(mote, last_expiry_us(h));
+    };
+    if (!refused && context_.run.all_stated && std::ranges::all_of(before, late)) {
+      context_.report("J8-FAIL"_rule, Severity::kFail, seen.place, mote,
+                      {"joined(FAIL) " + ms_text(now - before.back().first_request_us) +
+                           " after the first join_request.",
+                       "Not later than the fifth expiry of the timer.",
+                       {}});
+    }
+    context_.findings.kept("J8-FAIL"_rule);
+    if (!refused) {
+      for (MoteHypothesis& h : set) h.join = JoinMote{};
+      set.resize(1);
+    }
+    return;
+  }
+  said.text = "joined(FAIL) " + ms_text(now - before.back().first_request_us) +
+              " after the first join_request.";
+  said.expected = "Not before the fourth expiry of the timer, " +
+                  ms_text(MoteJoins::kExpiriesMin * context_.join_period_us()) + ".";
+  context_.report("J8-FAIL"_rule, Severity::kFail, seen.place, mote, std::move(said));
+}
+
+// Judges a call of joinIsland that by a log is still open at its end, of a mote that is a member.
+void JoinCalls::judge_member(std::uint16_t mote, const MoteHypothesis& h, std::int64_t end_us) {
+  const Calls& calls = calls_[mote];
+  if (!calls.last || calls.open == 0 || !context_.run.has_time) return;
+  if (!context_.device(mote).hearing) return;  // A log of the application alone may end before.
+  const bool again = calls.called.time_us > h.accepted_us;  // While it was a member.
+  // Unconfirmed, the call may wait for the end of all its requests, and fail (decision 102).
+  // In a whole log it has the time of a golden trace.
+  const bool whole = context_.device(mote).whole;
+  const std::int64_t joined_us = std::max(h.accepted_us, h.acked_us) + context_.response_us();
+  const std::int64_t over_us = whole ? joined_us : std::max(last_expiry_us(h), h.acked_us);
+  const std::int64_t from = again ? calls.called.time_us : over_us;
+  if (end_us <= context_.due_us(mote, from)) return;
+  context_.report(
+      again ? "J8-JOINED"_rule : "J5-SUCCESS"_rule, Severity::kFail, calls.called, mote,
+      {again ? std::string("joinIsland of a mote that is joined ended without an event.")
+             : "The mote accepted the address " + text_of(h.join.address) +
+                   " and its application is told nothing.",
+       again ? "joined(FAIL), at once." : "joined(" + text_of(h.join.address) + ", SUCCESS).",
+       {}});
+}
+
+// Returns when the timer of a call that may send all its requests expires for the last time.
+std::int64_t JoinCalls::last_expiry_us(const MoteHypothesis& h) const {
+  return h.first_request_us + context_.profile().join_requests_max * context_.join_period_us();
+}
+
+// Judges a call that by a whole log ran out without an event before the next one.
+void JoinCalls::judge_over(std::uint16_t mote, std::int64_t now_us) {
+  Calls& calls = calls_[mote];
+  const std::vector<MoteHypothesis>& set = std::as_const(motes_).set(mote);
+  if (!context_.device(mote).whole || calls.open == 0 || set.empty()) return;
+  const auto over = [&](const MoteHypothesis& h) {
+    return !h.unknown && h.join.phase == Phase::kJoining &&
+           now_us > context_.due_us(mote, last_expiry_us(h));
+  };
+  if (!std::ranges::all_of(set, over)) return;
+  calls.open = 0;
+  context_.report("J8-FAIL"_rule, Severity::kFail, calls.called, mote,
+                  {"A joinIsland call ended without any joined event.",
+                   "joined(FAIL), not later than the fifth expiry.",
+                   {}});
+}
+
+void JoinCalls::finish(std::int64_t end_us) {
+  for (std::size_t i = 0; i < calls_.size(); ++i) {
+    const auto mote = static_cast<std::uint16_t>(i);
+    const Device& device = context_.device(mote);
+    const std::vector<MoteHypothesis>& set = std::as_const(motes_).set(mote);
+    const bool known = set.size() == 1 && !set[0].unknown;
+    if (device.role != machine::Role::kMote || !device.application || !known) continue;
+    const MoteHypothesis& h = set[0];
+    if (h.join.phase == Phase::kMember) judge_member(mote, h, end_us);
+    if (h.join.phase != Phase::kJoining) continue;
+    if (end_us <= last_expiry_us(h) + context_.response_us()) continue;
+    if (h.first_request_us < 0) continue;                         // The begin is unknown.
+    if (calls_[mote].logged && calls_[mote].open == 0) continue;  // It had its event.
+    Place at;
+    at.time_us = h.first_request_us;
+    context_.report("J8-FAIL"_rule, Severity::kFail, at, mote,
+                    {"The join that began at " + ms_text(h.first_request_us) + " with number " +
+                         number(h.join.seq_num) + " ended without any joined event.",
+                     "joined(FAIL), not later than the fifth expiry.",
+                     {}});
+  }
+}
+
+}  // namespace rubric::check

@@ -1,0 +1,44 @@
+// joinIsland and joined, as a mote's log has them: what its application called and was told.
+//
+// MoteJoins knows the states that a mote may be in; here they are compared with the calls (J1) and
+// the events (J5, J8), which in turn rule out states that do not fit what the application was told.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "conformance/check/judge/mote_join.h"
+
+namespace rubric::check {
+
+class JoinCalls {
+ public:
+  JoinCalls(Context& context, MoteJoins& motes, std::size_t devices);
+
+  void begin_life(std::uint16_t mote);
+  /// Judges a request by the calls. Called before MoteJoins::request().
+  void request(std::uint16_t mote, const Observation& seen, const Request& request);
+  void called(std::uint16_t mote, const Observation& seen, const machine::JoinIsland& call);
+  void told(std::uint16_t mote, const Observation& seen, const machine::Joined& joined);
+  void finish(std::int64_t end_us);
+
+ private:
+  struct Calls {
+    bool logged = false;    ///< The log has join calls at all.
+    std::int64_t open = 0;  ///< That have not ended.
+    std::optional<machine::JoinIsland> last;
+    bool refusable = true;  ///< That one may fail at once.
+    Place called;
+  };
+
+  void judge_member(std::uint16_t mote, const MoteHypothesis& h, std::int64_t end_us);
+  void judge_over(std::uint16_t mote, std::int64_t now_us);
+  std::int64_t last_expiry_us(const MoteHypothesis& h) const;
+
+  Context& context_;
+  MoteJoins& motes_;
+  std::vector<Calls> calls_;
+};
+
+}  // namespace rubric::check
