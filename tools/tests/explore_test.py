@@ -207,7 +207,8 @@ class Transitions(unittest.TestCase):
         done = explore("--transitions", "--format", "dot")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(re.findall(r"^digraph (\w+)", done.stdout, re.M),
-                         ["join", "listing", "message", "output", "input"])
+                         ["join", "listing", "message", "output", "input", "mote_reception",
+                          "sink_reception"])
         self.assertEqual(explore("--format", "dot").returncode, 64)
 
     def test_a_flaw_shows(self):
