@@ -35,13 +35,17 @@ function realFrames(folder) {
   return frames;
 }
 
+/// The objects that the program prints as JSON lines.
+function records(rubric, args, input = '') {
+  const done = spawnSync(rubric, args, {input, encoding: 'utf8', maxBuffer: 1 << 28});
+  if (done.status > 1) throw new Error(`rubric ${args.join(' ')}: ${done.stderr}`);
+  return done.stdout.split('\n').filter(Boolean).map((line) => JSON.parse(line));
+}
+
 /// Frames of each message on that carrier, three of ten of them broken.
 function madeFrames(rubric, {spec, carrier}, seed) {
   const args = ['generate', '--spec', spec, '--count', '40000', '--seed', String(seed)];
-  const done = spawnSync(rubric, args, {encoding: 'utf8', maxBuffer: 1 << 28});
-  if (done.status !== 0) throw new Error(`rubric ${args.join(' ')}: ${done.stderr}`);
-  const frames = done.stdout.split('\n').filter(Boolean).map((line) => JSON.parse(line));
-  return frames.filter((frame) => frame.carrier === carrier)
+  return records(rubric, args).filter((frame) => frame.carrier === carrier)
       .map(({raw}) => Buffer.from(raw, 'hex'));
 }
 
@@ -86,4 +90,4 @@ function makeFrames(rubric, suite, folder, count, seed) {
   return frames;
 }
 
-module.exports = {makeFrames, seeded};
+module.exports = {makeFrames, mutate, records, seeded};
