@@ -68,8 +68,11 @@ function mutate(frame, random) {
   return out;
 }
 
-/// `count` frames of at least one byte for the suite: {bytes, origin: real, made up or mutated}.
-/// The real ones are RUBICON's of the serial line.
+// What a line of hex can say: it takes no more, and what begins with a flag for a frame of HDLC.
+const isOfHex = (bytes) => bytes.length > 0 && bytes.length <= 255 && bytes[0] !== 0x7e;
+
+/// `count` frames for the suite: {bytes, origin: real, made up or mutated}. The real ones are
+/// RUBICON's of the serial line.
 function makeFrames(rubric, suite, folder, count, seed) {
   const random = seeded(seed);
   const made = madeFrames(rubric, suite, seed);
@@ -84,7 +87,7 @@ function makeFrames(rubric, suite, folder, count, seed) {
       bytes = mutate(bytes, random);
     }
     const same = bytes.equals(source);
-    if (bytes.length === 0 || (same && fromReal)) continue;
+    if (!isOfHex(bytes) || (same && fromReal)) continue;
     frames.push({bytes, origin: same ? 'made up' : 'mutated'});
   }
   return frames;
