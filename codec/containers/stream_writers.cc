@@ -39,6 +39,8 @@ void Writer::finish(std::string&) {}
 
 bool HdlcWriter::write(const Packet& packet, std::string_view, std::string& out) {
   if (packet.framing != Framing::kHdlc && packet.framing != Framing::kSf) return false;
+  //= WIRE-HDLC-TWO-FLAGS: A writer puts two flags between frames, since a mote's receiver drops a
+  //= frame that shares its opening flag with the end of the frame before; a reader accepts one.
   out += static_cast<char>(kHdlcFlag);
   const std::size_t begin = out.size();
   if (packet.framing == Framing::kSf) {

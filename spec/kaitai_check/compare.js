@@ -4,19 +4,31 @@
 
 class Disagreement extends Error {}
 const camel = (name) => name.replace(/_(\w)/g, (_, c) => c.toUpperCase());
-const snake = (name) => name.replace(/([A-Z])/g, (c) => '_' + c.toLowerCase()).replace(/^_/, '');
+const pascal = (name) => name[0].toUpperCase() + camel(name).slice(1);
 const isBytes = (value) => value instanceof Uint8Array;
+
+/// Types of a spec by id, those within types, too.
+function typesOf(spec) {
+  const types = spec.seq ? {[spec.meta.id]: spec} : {};
+  const add = (more) => Object.entries(more || {}).forEach(([id, type]) => {
+    types[id] = type;
+    add(type.types);
+  });
+  add(spec.types);
+  return types;
+}
 
 class Comparer {
   constructor(specs) {
-    this.types = Object.assign({}, ...specs.map((s) => s.types));
-    this.enums = Object.assign({}, ...specs.map((s) => s.enums || {}));
+    const types = Object.entries(Object.assign({}, ...specs.map(typesOf)));
+    this.types = Object.fromEntries(types.map(([id, type]) => [pascal(id), type]));
+    this.enums = Object.assign({}, ...specs.map((s) => s.enums), ...types.map(([, t]) => t.enums));
   }
 
   typeOf(object) {
-    const name = snake(object.constructor.name);
+    const {name} = object.constructor;
     if (!this.types[name]) throw new Error(`no type ${name} in the spec`);
-    return {name, ...this.types[name]};
+    return this.types[name];
   }
 
   /// The first interpretation that fits, as Kaitai sees it: {id, object}, or null.
@@ -36,6 +48,9 @@ class Comparer {
   /// Fields and stale bytes of a record whose outermost message is `object`.
   message(record, object) {
     this.unread = [];
+    this.noted = new Set();
+    // What Kaitai makes of bytes that are no text is its own affair.
+    this.isText = !record.notes.some(({note}) => note === 'not_text');
     this.structure(record.fields, object, record.path[0]);
     this.unread.sort((a, b) => a.byteOffset - b.byteOffset);
     this.same(record.stale, Buffer.concat(this.unread).toString('hex'), 'stale');
@@ -45,7 +60,8 @@ class Comparer {
   /// instances is asked for: one that does not fit leaves the stream where it failed.
   noteUnread(object) {
     const io = object._io;
-    if (object._parent && object._parent._io === io) return;
+    if (this.noted.has(io)) return;
+    this.noted.add(io);
     this.unread.push(Buffer.from(io._buffer, io.byteOffset + io.pos, io.size - io.pos));
   }
 
@@ -54,15 +70,16 @@ class Comparer {
     const type = this.typeOf(object);
     const wanted = new Set();
     const body = this.interpretation(object, type);
-    for (const field of type.seq) {
+    for (const field of type.seq || []) {
       const overlaid = body && field['size-eos'] && !field.type;
       const key = overlaid ? 'body' : field.id;
-      wanted.add(key).add(`${key}_name`).add(`${key}_bits`);
-      if (!(key in json)) throw new Disagreement(`${where}.${key}: missing`);
+      const value = overlaid ? body.object : object[camel(field.id)];
+      ['', '_name', '_bits', '_hex'].forEach((suffix) => wanted.add(key + suffix));
+      this.same(key in json, value !== undefined, `${where}.${key} is there`);
       if (overlaid) {
-        this.structure(json.body, body.object, `${where}.body`);
-      } else {
-        this.field(json, field, object[camel(field.id)], `${where}.${field.id}`);
+        this.structure(json.body, value, `${where}.body`);
+      } else if (value !== undefined) {
+        this.field(json, field, value, `${where}.${key}`);
       }
     }
     for (const key of Object.keys(json)) {
@@ -98,13 +115,19 @@ class Comparer {
     type.seq.forEach((bit, i) => {
       if (!value[camel(bit.id)]) return;
       number += 2 ** (width - 1 - i);
-      names.unshift(bit.id);
+      names.unshift(bit['-unnamed'] ? `bit${width - 1 - i}` : bit.id);
     });
     return {number, names};
   }
 
   single(given, value, field, where) {
-    if (isBytes(value)) return this.same(given, Buffer.from(value).toString('hex'), where);
+    if (isBytes(value)) {
+      // A terminator is part of the bytes that rubric shows, and no part of Kaitai's.
+      const hex = Buffer.from(value).toString('hex');
+      return this.same('terminator' in field && given === hex + '0a' ? hex : given, hex, where);
+    }
+    if (typeof value === 'boolean') return this.same(given, value ? 1 : 0, where);
+    if (typeof value === 'string') return this.isText && this.same(given, value, where);
     if (typeof value === 'number') return this.number(given, value, field, where);
     const mask = this.mask(value);
     if (mask) return this.same(given, mask.number, where);
@@ -123,4 +146,4 @@ class Comparer {
   }
 }
 
-module.exports = {Comparer, Disagreement};
+module.exports = {Comparer, Disagreement, pascal, typesOf};

@@ -35,13 +35,17 @@ function realFrames(folder) {
   return frames;
 }
 
+/// The objects that the program prints as JSON lines.
+function records(rubric, args, input = '') {
+  const done = spawnSync(rubric, args, {input, encoding: 'utf8', maxBuffer: 1 << 28});
+  if (done.status > 1) throw new Error(`rubric ${args.join(' ')}: ${done.stderr}`);
+  return done.stdout.split('\n').filter(Boolean).map((line) => JSON.parse(line));
+}
+
 /// Frames of each message on that carrier, three of ten of them broken.
 function madeFrames(rubric, {spec, carrier}, seed) {
   const args = ['generate', '--spec', spec, '--count', '40000', '--seed', String(seed)];
-  const done = spawnSync(rubric, args, {encoding: 'utf8', maxBuffer: 1 << 28});
-  if (done.status !== 0) throw new Error(`rubric ${args.join(' ')}: ${done.stderr}`);
-  const frames = done.stdout.split('\n').filter(Boolean).map((line) => JSON.parse(line));
-  return frames.filter((frame) => frame.carrier === carrier)
+  return records(rubric, args).filter((frame) => frame.carrier === carrier)
       .map(({raw}) => Buffer.from(raw, 'hex'));
 }
 
@@ -64,8 +68,11 @@ function mutate(frame, random) {
   return out;
 }
 
-/// `count` frames of at least one byte for the suite: {bytes, origin: real, made up or mutated}.
-/// The real ones are RUBICON's of the serial line.
+// What a line of hex can say: it takes no more, and what begins with a flag for a frame of HDLC.
+const isOfHex = (bytes) => bytes.length > 0 && bytes.length <= 255 && bytes[0] !== 0x7e;
+
+/// `count` frames for the suite: {bytes, origin: real, made up or mutated}. The real ones are
+/// RUBICON's of the serial line.
 function makeFrames(rubric, suite, folder, count, seed) {
   const random = seeded(seed);
   const made = madeFrames(rubric, suite, seed);
@@ -80,10 +87,10 @@ function makeFrames(rubric, suite, folder, count, seed) {
       bytes = mutate(bytes, random);
     }
     const same = bytes.equals(source);
-    if (bytes.length === 0 || (same && fromReal)) continue;
+    if (!isOfHex(bytes) || (same && fromReal)) continue;
     frames.push({bytes, origin: same ? 'made up' : 'mutated'});
   }
   return frames;
 }
 
-module.exports = {makeFrames, seeded};
+module.exports = {makeFrames, mutate, records, seeded};

@@ -8,28 +8,23 @@ import os
 import pathlib
 import re
 import subprocess
-import sys
-import tempfile
 import unittest
 import xml.etree.ElementTree as ElementTree
 
 import yaml
 
-RUBRIC = pathlib.Path(sys.argv.pop(1)).resolve()
+import testing
+from testing import RUBRIC
+
 FOLDER = pathlib.Path("conformance/ci")
 CAPTURE = pathlib.Path("spec/captures/firmware/a_join_data.pcapng").resolve()
 ANSWERS = "--target machine --cases 'j4.*'"
 
 
-class CiFiles(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-
+class CiFiles(testing.Folder):
     def run_script(self, script, **variables):
         """Runs a script as a runner's shell does: bash, stopping at the first error."""
-        path = f"{RUBRIC.parent}:{os.environ['PATH']}"
+        path = f"{os.path.dirname(RUBRIC)}:{os.environ['PATH']}"
         syntax = subprocess.run(["bash", "-n", "-c", script], capture_output=True, check=False)
         self.assertEqual((syntax.returncode, syntax.stderr), (0, b""))
         return subprocess.run(["bash", "-eo", "pipefail", "-c", script], cwd=self.folder,

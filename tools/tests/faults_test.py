@@ -7,18 +7,17 @@ Usage: faults_test.py RUBRIC FAILING_CALLS
 """
 import errno
 import os
-import pathlib
 import re
-import shutil
 import socket
 import subprocess
 import sys
-import tempfile
 import threading
 import unittest
 
-RUBRIC, SHIM = sys.argv[1:3]
-FIRMWARE = pathlib.Path(__file__).resolve().parents[2] / "spec/captures/firmware"
+import testing
+from testing import FIRMWARE, RUBRIC
+
+SHIM = sys.argv.pop(1)
 CAPTURE = FIRMWARE / "a_join_data.pcapng"
 OLD = b"an old file\n" * 100
 PATIENCE_S = 30
@@ -72,10 +71,9 @@ class Forwarder:
                 pass
 
 
-class Faults(unittest.TestCase):
+class Faults(testing.Folder):
     def setUp(self):
-        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="rubric-faults-"))
-        self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
+        super().setUp()
         self.old = self.folder / "old"
         self.count = self.folder / "count"
 
@@ -84,10 +82,8 @@ class Faults(unittest.TestCase):
                     FAIL_ERRNO=str(failure), FAIL_COUNT=str(self.count))
 
     def run_with(self, words, call, at, failure=errno.EIO):
-        env = self.failing(call, at, failure)
-        words = [str(self.old) if word == "@" else str(word) for word in words]
-        return subprocess.run([RUBRIC, *words], env=env, stdin=subprocess.DEVNULL, check=False,
-                              capture_output=True, timeout=PATIENCE_S)
+        words = [self.old if word == "@" else word for word in words]
+        return testing.run(*words, env=self.failing(call, at, failure), timeout=PATIENCE_S)
 
     def places(self, words, call):
         """Returns the numbers of the calls that fail in turn, and what a good run does."""
@@ -163,4 +159,4 @@ class Faults(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1])
+    unittest.main()

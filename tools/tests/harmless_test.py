@@ -4,17 +4,14 @@ of expectations, source lines, options, and what adapters write.
 
 Usage: harmless_test.py RUBRIC
 """
-import pathlib
+import os
 import re
-import shutil
 import struct
-import subprocess
-import sys
-import tempfile
 import unittest
 
-RUBRIC = sys.argv[1]
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+import testing
+from testing import ROOT
+
 CAPTURE = ROOT / "spec/captures/firmware/b_reliable.pcapng"
 CASES = ROOT / "conformance/cases/j2.rtr"
 # Colour, a title, a bell, C1 controls in UTF-8 and as bytes, and text that turns round.
@@ -44,13 +41,9 @@ def capture():
     return out
 
 
-class Harmless(unittest.TestCase):
-    def setUp(self):
-        self.folder = tempfile.mkdtemp(prefix="rubric-harmless-").encode()
-        self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
-
+class Harmless(testing.Folder):
     def write(self, name, data):
-        path = self.folder + b"/" + name
+        path = os.fsencode(self.folder) + b"/" + name
         with open(path, "wb") as file:
             file.write(data)
         return path
@@ -61,8 +54,7 @@ class Harmless(unittest.TestCase):
         for color in ("never", "always"):
             words_now = [*words, "--color", color] if words[0] in (
                 "check", "decode", "test") else words
-            done = subprocess.run([RUBRIC, *words_now], stdin=subprocess.DEVNULL, check=False,
-                                  capture_output=True, timeout=60)
+            done = testing.run(*map(os.fsdecode, words_now), timeout=60)
             self.assertGreaterEqual(done.returncode, 0, words)
             out = done.stdout + done.stderr
             text += COLOURS.sub(b"", out.replace(EVIL, b"EVIL")) if color == "always" else out
@@ -77,7 +69,7 @@ class Harmless(unittest.TestCase):
 
     def test_names_of_files(self):
         there = self.write(EVIL + b".pcapng", CAPTURE.read_bytes())
-        gone = self.folder + b"/gone" + EVIL
+        gone = os.fsencode(self.folder) + b"/gone" + EVIL
         for path in (there, gone):
             for words in (("check", path), ("decode", path, "--format", "text"),
                           ("check", path, path), ("stats", path),
@@ -122,8 +114,7 @@ class Harmless(unittest.TestCase):
         self.assert_harmless("decode", "--spec", spec, CAPTURE, says=b"")
 
     def test_expectations(self):
-        found = subprocess.run([RUBRIC, "check", CAPTURE, "--format", "json"], check=False,
-                               capture_output=True).stdout
+        found = testing.run("check", CAPTURE, "--format", "json").stdout
         self.assertIn(b'"findings"', found)
         for text in ("J2-NAMES", "J4-SEQ"):
             path = self.write(b"x.yaml", b'- requirement: ' + text.encode() +
@@ -141,4 +132,4 @@ class Harmless(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1])
+    unittest.main()

@@ -10,18 +10,13 @@ import pathlib
 import shutil
 import struct
 import subprocess
-import sys
 import tempfile
 import unittest
 
-RUBRIC = sys.argv.pop(1)
+from testing import rubric
+
 ZEP_PORT = 17754
 NTP_TO_1970 = 2_208_988_800
-
-
-def rubric(*args, stdin=b""):
-    done = subprocess.run([RUBRIC, *map(str, args)], input=stdin, capture_output=True, check=False)
-    return done.returncode, done.stdout.decode(), done.stderr.decode()
 
 
 def fcs(data):

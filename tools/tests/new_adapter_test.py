@@ -12,7 +12,7 @@ import sys
 import tempfile
 import unittest
 
-RUBRIC = str(pathlib.Path(sys.argv.pop(1)).resolve())
+from testing import RUBRIC
 
 SKELETONS = {
     "python": ([], ["python3", "adapter.py"], "mote"),
