@@ -184,7 +184,7 @@ struct Run {
   Past past;
 
   /// Returns whether it is one log that has all of its nodes under test, from their start on
-  /// (decision 143).
+  /// (decision 24).
   bool tells_all() const {
     return files.size() == 1 &&
            std::ranges::all_of(

@@ -235,6 +235,8 @@ class Install(unittest.TestCase):
                  "small.rtr": ROOT / "conformance/cases/j4.rtr",
                  "no_fail.rtr": ROOT / "conformance/cases/j4.rtr",
                  "captures/one.pcapng": firmware / "b_reliable.pcapng"}
+        if "--protocol my_protocol" in example:
+            run(self.prefix / "bin/rubric", "new-protocol", "my_protocol", cwd=folder)
         for name, source in files.items():
             if name in example or name.startswith("captures/") and "captures/" in example:
                 (folder / name).parent.mkdir(exist_ok=True)

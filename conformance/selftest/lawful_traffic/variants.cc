@@ -22,6 +22,7 @@ constexpr WithoutVariant kWithout[] = {
     {138, "It makes no rule."},
     {141, "The sizes of a node are no frames."},
     {142, "What an application makes of its data is not on the air."},
+    {150, kLater},
 };
 
 void usual(Plan&, Random&) {}

@@ -1,6 +1,6 @@
 // `rubric test` and `rubric check` agree about every run, in both directions.
 //
-// Each run of the suite goes through the judge as its log, which is whole (decision 143), and as a
+// Each run of the suite goes through the judge as its log, which is whole (decision 24), and as a
 // capture, once with nothing known of the recorder and once with the truth: it began with the node
 // and missed nothing.
 // - A run that the suite finds in order is not blamed: no legal variant, no shipped implementation;

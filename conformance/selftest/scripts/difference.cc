@@ -266,7 +266,7 @@ class CppTarget : public runner::Target, public node::Driver, public node::Appli
     lines_ = {};
     outputs_.clear();
     now_ = 0;
-    start();
+    boot();
   }
 
   void give(Ticks now, const machine::Event& event) override {
@@ -326,7 +326,7 @@ class CppTarget : public runner::Target, public node::Driver, public node::Appli
     if (node_ && node_->run(now, due)) due_ = now_ + (due - now);
   }
 
-  void start() {
+  void boot() {
     setup_.now = static_cast<node::Ticks>(now_);
     node_.emplace(*this, *this);
     node_->start(setup_);
@@ -367,7 +367,7 @@ class CppTarget : public runner::Target, public node::Driver, public node::Appli
     node_->received(node_line(heard.frame.link), Bytes(packet.data(), packet.size()));
   }
   void happens(const machine::Called& called) {
-    if (node_) std::visit([this](const auto& one) { call(one); }, called.call);
+    if (node_) std::visit([this](const auto& one) { ask(one); }, called.call);
   }
   void happens(const machine::TimerDue&) {}  // Its timers are its own.
   void happens(const machine::SendDone& done) {
@@ -382,30 +382,30 @@ class CppTarget : public runner::Target, public node::Driver, public node::Appli
   }
   void happens(const machine::Reboot&) {
     stop();
-    start();
+    boot();
   }
   void happens(const machine::PowerOff&) { stop(); }
 
   // Calls.
   void result(bool success) { tell(machine::OperationResult{success}); }
-  void call(const machine::JoinIsland& c) {
+  void ask(const machine::JoinIsland& c) {
     node::Descriptor description;
     description.mote_type = static_cast<rubicon::MoteType>(c.descriptor.mote_type);
     description.transducers = rubicon::TransducerMask(c.descriptor.transducers);
     description.actuators = rubicon::ActuatorMask(c.descriptor.actuators);
     node_->join(description);
   }
-  void call(const machine::Send& c) {
+  void ask(const machine::Send& c) {
     tell(machine::SendResult{node_->send(node_address(c.dest), c.app_id, c.reliable, c.data)});
   }
-  void call(const machine::SetInterface& c) {
+  void ask(const machine::SetInterface& c) {
     result(node_->set_interface(node_line(c.link), c.on));
   }
-  void call(const machine::GetInterface& c) {
+  void ask(const machine::GetInterface& c) {
     if (c.link == Link::kPeis) return result(false);
     tell(machine::InterfaceState{c.link, node_->interface_is_on(node_line(c.link))});
   }
-  void call(const machine::CreateChannel& c) {
+  void ask(const machine::CreateChannel& c) {
     const bool out = c.direction == machine::Direction::kOut;
     const auto mode = static_cast<node::Mode>(c.mode);
     const node::Address peer = node_address(c.peer);
@@ -413,25 +413,25 @@ class CppTarget : public runner::Target, public node::Driver, public node::Appli
         out ? node_->create_out(peer, c.size, mode) : node_->create_in(peer, c.size, mode);
     tell(machine::ChannelResult{made.id, made.success});
   }
-  void call(const machine::DisposeChannel& c) { result(node_->dispose(c.id)); }
-  void call(const machine::StartChannel& c) { result(node_->start_channel(c.id)); }
-  void call(const machine::StopChannel& c) { result(node_->stop_channel(c.id)); }
-  void call(const machine::StartAllChannels&) {
+  void ask(const machine::DisposeChannel& c) { result(node_->dispose(c.id)); }
+  void ask(const machine::StartChannel& c) { result(node_->start_channel(c.id)); }
+  void ask(const machine::StopChannel& c) { result(node_->stop_channel(c.id)); }
+  void ask(const machine::StartAllChannels&) {
     node_->start_all();
     result(true);
   }
-  void call(const machine::StopAllChannels&) {
+  void ask(const machine::StopAllChannels&) {
     node_->stop_all();
     result(true);
   }
-  void call(const machine::WriteOutput& c) { result(node_->write_output(c.id, c.pos, c.value)); }
-  void call(const machine::ReadInput& c) {
+  void ask(const machine::WriteOutput& c) { result(node_->write_output(c.id, c.pos, c.value)); }
+  void ask(const machine::ReadInput& c) {
     const node::InputValue value = node_->read_input(c.id, c.pos);
     tell(machine::InputValue{value.value, value.success});
   }
-  void call(const machine::SetTimeStep& c) { result(node_->set_time_step(c.ticks)); }
-  void call(const machine::SetIslandId& c) { result(node_->set_island(c.island)); }
-  void call(const machine::GetClock&) { tell(machine::Clock{node_->clock_ms()}); }
+  void ask(const machine::SetTimeStep& c) { result(node_->set_time_step(c.ticks)); }
+  void ask(const machine::SetIslandId& c) { result(node_->set_island(c.island)); }
+  void ask(const machine::GetClock&) { tell(machine::Clock{node_->clock_ms()}); }
 
   // What the node does.
   void transmit(node::Line which, Bytes packet, bool link_ack) override {
