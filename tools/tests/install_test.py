@@ -237,6 +237,10 @@ class Install(unittest.TestCase):
                  "captures/one.pcapng": firmware / "b_reliable.pcapng"}
         if "--protocol my_protocol" in example:
             run(self.prefix / "bin/rubric", "new-protocol", "my_protocol", cwd=folder)
+            for name in ("old_node", "new_node"):
+                (folder / name).write_text("#!/bin/sh\nexec python3 my_protocol/node.py\n",
+                                           encoding="utf-8")
+                (folder / name).chmod(0o755)
         for name, source in files.items():
             if name in example or name.startswith("captures/") and "captures/" in example:
                 (folder / name).parent.mkdir(exist_ok=True)
