@@ -72,8 +72,7 @@ Sample sample_of(const InputOptions& options, Bytes beginning) {
   };
   reader->feed(beginning, take);
   // Text needs no end of line; of other formats the rest is a cut frame.
-  const bool text = reading.format == InputFormat::kHex || reading.format == InputFormat::kLog;
-  if (text) reader->finish(take);
+  if (is_text(reading.format)) reader->finish(take);
   for (std::size_t i = 0; i < sample.packets.size(); ++i) {
     sample.packets[i].bytes = view(sample.bytes[i]);
     sample.packets[i].comment = {};

@@ -243,8 +243,7 @@ class Run {
       }
     }
     const Reading reading = reading_of(options_, beginning);
-    const bool text = reading.format == InputFormat::kHex || reading.format == InputFormat::kLog;
-    if (bare && !text) return whole(file, size);
+    if (bare && !is_text(reading.format)) return whole(file, size);
     if (!reading.remark.empty()) remark(reading.remark);
     fcs_ = reading.fcs;
     std::unique_ptr<Reader> reader = make_reader(reading.format, reading.options);
@@ -256,8 +255,7 @@ class Run {
   static std::string_view unknown_format(Bytes beginning) {
     if (is_hex_dump(beginning)) {
       return "this is a hex dump with offsets; 'text2pcap -l 195 FILE FILE.pcap' makes a capture "
-             "of "
-             "it (-l 230 for radio frames without FCS)";
+             "of it (-l 230 for radio frames without FCS)";
     }
     return "this begins like no serial line, forwarder stream, pcap, pcapng or hex text; name it "
            "with --input-format, or try 'tshark -r FILE -w FILE.pcapng'";

@@ -67,10 +67,6 @@ InputFormat find_format(std::string_view name) {
   return InputFormat::kUnknown;
 }
 
-bool is_text(InputFormat format) {
-  return format == InputFormat::kHex || format == InputFormat::kLog;
-}
-
 // Decides whether lines of text are radio frames.
 void choose_radio_text(const InputOptions& options, Bytes beginning, Reading& reading) {
   const bool named = options.format == kHexRadio;
@@ -101,6 +97,10 @@ void choose_fcs(const InputOptions& options, Bytes beginning, Reading& reading) 
 }
 
 }  // namespace
+
+bool is_text(InputFormat format) {
+  return format == InputFormat::kHex || format == InputFormat::kLog;
+}
 
 std::string_view format_name(InputFormat format) {
   for (const FormatName& known : kFormats) {

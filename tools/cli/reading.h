@@ -18,6 +18,9 @@ struct Reading {
   std::string remark;  ///< What nobody asked for was decided from the content; empty: nothing.
 };
 
+/// Returns whether its lines are the packets.
+bool is_text(InputFormat format);
+
 /// Returns how an input that begins with these bytes is read.
 Reading reading_of(const InputOptions& options, Bytes beginning);
 
