@@ -75,24 +75,27 @@ std::vector<shrink::Player> references(
     const trace::File& file, const trace::Statement& stated,
     const std::vector<std::unique_ptr<AttachedPlayer>>& attached) {
   std::vector<shrink::Player> all;
+  const auto add = [&](const shrink::Player& one) {
+    const bool good = passes(shrink::play(file, one));
+    if (good) all.push_back(one);
+    return good;
+  };
   for (const auto& one : attached) {
-    all.push_back(one->player());
-    if (passes(shrink::play(file, all.back()))) continue;
+    if (add(one->player())) continue;
     throw cli::UsageError("--reference", one->name() + " does not pass the trace itself");
   }
-  const auto add = [&](const runner::SubjectFactory& make) {
-    all.push_back({[make](const trace::NodeHeader&) {
-                     return std::make_unique<runner::SubjectTarget>(make());
-                   },
-                   "", stated});
+  const auto add_machine = [&](const runner::SubjectFactory& make) {
+    add({[make](const trace::NodeHeader&) {
+           return std::make_unique<runner::SubjectTarget>(make());
+         },
+         "", stated});
   };
   if (trace::protocol().has_machine) {
-    add([] { return std::make_unique<runner::Machine>(); });
+    add_machine([] { return std::make_unique<runner::Machine>(); });
     for (const mutants::LegalVariant& one : mutants::legal_variants()) {
-      add(mutants::wrapped(one.step));
+      add_machine(mutants::wrapped(one.step));
     }
   }
-  std::erase_if(all, [&](const shrink::Player& one) { return !passes(shrink::play(file, one)); });
   return all;
 }
 
