@@ -176,4 +176,13 @@ using Notice =
     std::variant<Joined, MoteJoined, MoteLeft, SendResult, Received, AckReceived, SynDataReceived,
                  ChannelResult, OperationResult, InputValue, InterfaceState, Clock>;
 
+/// Returns whether it is the result of a call that has one, whatever else happens.
+inline bool is_result(const Notice& notice) {
+  return std::holds_alternative<SendResult>(notice) ||
+         std::holds_alternative<ChannelResult>(notice) ||
+         std::holds_alternative<OperationResult>(notice) ||
+         std::holds_alternative<InputValue>(notice) ||
+         std::holds_alternative<InterfaceState>(notice) || std::holds_alternative<Clock>(notice);
+}
+
 }  // namespace rubric::machine

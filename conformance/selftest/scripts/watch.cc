@@ -54,16 +54,6 @@ bool same_notices(const Actions& a, const Actions& b) {
                     [&](const auto& x, const auto& y) { return text(x) == text(y); });
 }
 
-// Returns whether it is the result of a call that has one, whatever else happens.
-bool is_result(const machine::Notice& notice) {
-  return std::holds_alternative<machine::SendResult>(notice) ||
-         std::holds_alternative<machine::ChannelResult>(notice) ||
-         std::holds_alternative<machine::OperationResult>(notice) ||
-         std::holds_alternative<machine::InputValue>(notice) ||
-         std::holds_alternative<machine::InterfaceState>(notice) ||
-         std::holds_alternative<machine::Clock>(notice);
-}
-
 bool parses(const Transmit& t) {
   const trace::AmFrame frame{t.dest, t.src, 0, t.type, {t.bytes().begin(), t.bytes().end()}};
   return trace::decode(frame, events::kind_of(t.link)).name != trace::kFrameName;
@@ -200,8 +190,8 @@ void Watched::check_labels(const Seen& seen) {
   if (heard) must(!seen.actions.all().empty(), "No frame is taken without a word.", seen.now);
   if (!called || seen.before.off) return;
   const bool joins = std::holds_alternative<machine::JoinIsland>(called->call);
-  const auto results =
-      std::count_if(seen.actions.notices().begin(), seen.actions.notices().end(), is_result);
+  const auto results = std::count_if(seen.actions.notices().begin(), seen.actions.notices().end(),
+                                     machine::is_result);
   must(results == (joins ? 0 : 1), "Each call but joinIsland returns once.", seen.now);
   if (joins) must(!seen.actions.all().empty(), "No call is taken without a word.", seen.now);
 }

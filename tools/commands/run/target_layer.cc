@@ -17,15 +17,6 @@ namespace {
 
 using machine::Notice;
 
-bool is_result(const Notice& notice) {
-  return std::holds_alternative<machine::SendResult>(notice) ||
-         std::holds_alternative<machine::ChannelResult>(notice) ||
-         std::holds_alternative<machine::OperationResult>(notice) ||
-         std::holds_alternative<machine::InputValue>(notice) ||
-         std::holds_alternative<machine::InterfaceState>(notice) ||
-         std::holds_alternative<machine::Clock>(notice);
-}
-
 }  // namespace
 
 TargetLayer::TargetLayer(const std::string& target, std::uint16_t id, std::uint16_t first_seq,
@@ -61,11 +52,7 @@ void TargetLayer::guarded(Action action) {
 
 std::optional<node::Ticks> TargetLayer::run(node::Ticks now) {
   now_ = now;
-  guarded([&] {
-    while (target_->run_until(now) < now) {
-    }
-  });
-  take(nullptr);
+  advance();
   while (!news_.empty()) {
     runner::Output news = std::move(news_.front());
     news_.pop_front();
@@ -80,13 +67,24 @@ std::optional<node::Ticks> TargetLayer::run(node::Ticks now) {
   return target_->next();
 }
 
+// Lets the target come to the present, and takes what it did.
+void TargetLayer::advance() {
+  guarded([&] {
+    while (target_->run_until(now_) < now_) {
+    }
+  });
+  take(nullptr);
+}
+
 // Takes what is new; the first result of a call goes to `result`, if that is wanted.
 void TargetLayer::take(std::optional<Notice>* result) {
   for (const std::vector<runner::Output>& all = target_->outputs(); taken_ < all.size(); ++taken_) {
     const runner::Output& output = all[taken_];
     std::optional<Notice> notice;
-    if (!output.is_frame) notice = events::to_notice(trace::concrete(output.news));
-    if (result != nullptr && notice && !*result && is_result(*notice)) {
+    if (result != nullptr && !*result && !output.is_frame) {
+      notice = events::to_notice(trace::concrete(output.news));
+    }
+    if (notice && machine::is_result(*notice)) {
       *result = notice;
     } else if (!output.is_frame || output.frame.link == machine::Link::kRadio) {
       news_.push_back(output);
@@ -121,11 +119,7 @@ void TargetLayer::send_next() {
 }
 
 std::optional<Notice> TargetLayer::call(const machine::Call& call) {
-  guarded([&] {
-    while (target_->run_until(now_) < now_) {
-    }
-  });
-  take(nullptr);
+  advance();
   give(machine::Called{call});
   std::optional<Notice> result;
   take(&result);

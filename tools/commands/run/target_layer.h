@@ -33,6 +33,7 @@ class TargetLayer final : public Layer {
   template <class Action>
   void guarded(Action action);
   void give(const machine::Event& event);
+  void advance();
   void take(std::optional<machine::Notice>* result);
   void send_next();
 
