@@ -1,10 +1,6 @@
 // The subcommands of rubric. Each is the file of its name, which adds itself to the program.
 #pragma once
 
-#include <map>
-#include <string>
-#include <string_view>
-
 #include "tools/cli/command.h"
 
 namespace rubric::tools {
@@ -34,9 +30,5 @@ void add_run(cli::Command& program);
 void add_simulate(cli::Command& program);
 void add_stats(cli::Command& program);
 void add_test(cli::Command& program);
-
-/// Returns texts by paths in the project of what `rubric new-adapter` writes, generated when the
-/// program is built.
-const std::map<std::string, std::string_view>& skeleton_files();
 
 }  // namespace rubric::tools
