@@ -76,7 +76,7 @@ std::uint16_t crc_of(Bytes bytes) {
   return crc16_portable(bytes, 0);
 }
 
-// Sums the bytes between flags, of which it knows where they are: the least that deframing does.
+// Computes only the check sums of frames whose places are known: the least that deframing costs.
 template <CpuPath kPath>
 void sums_alone(benchmark::State& state) {
   const std::string& stream =

@@ -25,8 +25,8 @@
 // Why an inconclusive finding is never a failure here: a missing ack fails only if the message
 // surely arrived, the response time is over, the node sent something afterwards, no bytes were
 // damaged in between, not too many messages came at once (Context::crowded()), and the ack cannot
-// have escaped: Context::without() says that of a node that acks by radio, while a serial line is
-// seen whole. What is still open when the run ends, or when kRoom newer messages have come, is
+// have escaped: Context::without() says that of a node that acks by radio; on a serial line nothing
+// escapes. What is still open when the run ends, or when kRoom newer messages have come, is
 // inconclusive, or no finding where a log shows that it never arrived. An ack of nothing that came
 // fails only in a run that starts cold, with a complete sniffer, and at a sink of whose line both
 // directions were recorded. A second ack fails only if no second copy of the message can have

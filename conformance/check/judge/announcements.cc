@@ -169,7 +169,7 @@ void Announcements::serial_set(std::uint16_t sink_device, bool on, std::int64_t 
   if (sink == nullptr) return;
   sink->serial_off = !on;
   if (on) sink->serial_on_us = now_us;
-  if (on || context_.device(sink_device).whole) return;  // What it owes waits until it is on again.
+  if (on || context_.device(sink_device).whole) return;  // Reports wait until it is on again.
   for (auto& [am, watch] : sink->motes) watch.report_due = false;
   sink->debts = 0;
 }

@@ -419,7 +419,7 @@ bool Forwarding::sent_on_radio(std::uint16_t sink, const Observation& seen, cons
     refuse_down(*line, seen, net);
     return true;
   }
-  // That nobody gave the sink this message, only a run shows that has everything in its order.
+  // Only a run that has everything, in its order, shows that nobody gave the sink this message.
   const std::int64_t now = seen.place.time_us;
   const bool sure = !context_.run.order_guessed &&
                     context_.without_ever(kNobody, now) == Severity::kFail &&
@@ -460,8 +460,8 @@ bool Forwarding::came_down(std::uint16_t sink, const Net& net) {
   });
 }
 
-// Returns whether another sink has that message to radiate: in a capture of two sinks of one
-// address nobody knows for certain whose frame it is.
+// Returns whether another sink has that message to send: a capture of two sinks with one address
+// does not show which of them sent a frame.
 bool Forwarding::may_be_anothers(const Line& line, const Net& net) {
   for (Line& other : lines_) {
     if (&other == &line || context_.device(line.sink).hearing) continue;

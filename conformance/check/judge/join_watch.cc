@@ -157,7 +157,7 @@ void JoinWatch::settle(std::uint16_t node, std::int64_t now_us, bool end) {
   if (debts.empty()) return;
   const Device& device = context_.device(node);
   std::erase_if(debts, [&](const Debt& debt) {
-    // What the application is told later may show that it is owed.
+    // A later event of the application may still show whether it is owed.
     if (now_us <= debt.due_us && (!end || device.hearing)) return false;
     if (!still_owed(node, debt)) return true;
     const std::int64_t from = context_.run.seen[debt.index].place.time_us;

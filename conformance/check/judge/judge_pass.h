@@ -29,7 +29,7 @@ class Judge {
   bool is(std::uint16_t device, machine::Role role) const;
   machine::Address address_of(std::uint16_t node) const;
   void look(std::uint32_t index);
-  // Judges what a node owes of which a log has all that it does: until now it had the time.
+  // Judges what a node should have done by now, where its log has all that it did.
   void overdue(std::uint16_t device, std::int64_t now_us);
   void begin_life(std::uint16_t device);
   // Takes the link's own repetition, or a log's line that shows who received a frame.

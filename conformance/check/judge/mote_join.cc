@@ -345,7 +345,7 @@ void MoteJoins::refuse_ack(std::uint16_t mote, const Observation& seen, const Ac
     said.text += asked ? "; its request has number " + number(h.join.seq_num) + "." : ".";
     said.expected = asked ? "No ack_join but to a reply with number " + number(h.join.seq_num) + "."
                           : "No ack_join without a request.";
-    // One that fits its own request could answer a right reply that nobody captured.
+    // An ack_join that fits its own request may answer a reply that was not captured.
     if (asked && ack.seq_num != h.join.seq_num) {  // Its own, asked anew.
       severity = context_.without(mote, h.last_request_us, now);
     }
