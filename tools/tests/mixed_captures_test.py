@@ -94,7 +94,7 @@ def time_of(number):
     return 1_600_000_000_000_000 + number * 31_250 - (90_000 if number % 17 == 3 else 0)
 
 
-def pcap(link_type, records, order="<", nano=False, snaplen=65535):
+def pcap(link_type, records, order="<", nano=False, snaplen=65535, time_of=time_of):
     magic = 0xA1B23C4D if nano else 0xA1B2C3D4
     out = struct.pack(order + "IHHIIII", magic, 2, 4, 0, 0, snaplen, link_type)
     for number, record in enumerate(records):
@@ -147,12 +147,20 @@ FIELDS = ("wpan.src16", "wpan.seq_no", "wpan.rssi", "wpan.correlation", "wpan-ta
           "wpan-tap.ch_num", "wpan-tap.asn", "wpan-tap.lqi", "zep.channel_id")
 
 
-class Mixed(unittest.TestCase):
+class Captures(unittest.TestCase):
+    """Tests with captures in a folder."""
+
     @classmethod
     def setUpClass(cls):
-        cls.folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(cls.folder.cleanup)
-        cls.path = pathlib.Path(cls.folder.name)
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.path = pathlib.Path(folder.name)
+
+
+class Mixed(Captures):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
         for name, content in CAPTURES.items():
             (cls.path / name).write_bytes(content)
 
@@ -306,14 +314,12 @@ class Mixed(unittest.TestCase):
                          rubric("check", self.path / "dongle.pcap")[0])
 
 
-class Check(unittest.TestCase):
+class Check(Captures):
     """`rubric check` reads what decode reads: of any sniffer the same frames, the same verdict."""
 
     @classmethod
     def setUpClass(cls):
-        cls.folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(cls.folder.cleanup)
-        cls.path = pathlib.Path(cls.folder.name)
+        super().setUpClass()
         source = "spec/captures/firmware/g2_stray_reply_while_joining.pcapng"
         text = rubric("decode", "--format", "jsonl", "--filter", 'framing=="radio"', source)[1]
         # Eight frames of another PAN and no protocol, by which trailers are recognised.
@@ -323,13 +329,9 @@ class Check(unittest.TestCase):
                                for one in map(json.loads, text.splitlines())]
 
     def capture(self, name, link_type, make):
-        records = b""
-        for frame, time_ms in self.frames:
-            record = make(frame)
-            records += struct.pack("<IIII", time_ms // 1000, time_ms % 1000 * 1000, len(record),
-                                   len(record)) + record
-        (self.path / name).write_bytes(struct.pack("<IHHIIII", 0xA1B2C3D4, 2, 4, 0, 0, 65535,
-                                                   link_type) + records)
+        records = [make(frame) for frame, _ in self.frames]
+        (self.path / name).write_bytes(
+            pcap(link_type, records, time_of=lambda number: self.frames[number][1] * 1000))
         return name
 
     def text(self, name, make, noise=""):

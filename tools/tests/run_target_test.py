@@ -8,16 +8,14 @@ import subprocess
 import sys
 import unittest
 
-from live_testing import RUBRIC, LiveTest
-from run_test import Node
+from live_testing import RUBRIC
+from run_test import IslandTest
 
 TARGETS = sys.argv[1:]
 del sys.argv[1:]
 
 
-class Targets(LiveTest):
-    program = Node
-
+class Targets(IslandTest):
     def judged(self, kept):
         checked = subprocess.run([RUBRIC, "check", kept], capture_output=True, check=False,
                                  text=True)
@@ -25,12 +23,7 @@ class Targets(LiveTest):
 
     def island_with(self, target):
         kept, log = self.folder / "run.pcapng", self.folder / "mote.rtr"
-        sink = self.started("sink", "--island", "11", "--radio", "zep:0", "--serial",
-                            "sf-server:0", "--seed", "1", "--write", kept)
-        air = "zep:" + sink.waits_for(rb"zep:(\d+)\n")
-        serial = "sf@localhost:" + sink.waits_for(rb"sf-server:(\d+)\n")
-        base = self.started("base-station", "--island", "11", "--sink", serial, "--app", "-")
-        base.waits_for(rb"(connected)")
+        sink, base, air = self.island(kept)
         mote = self.started("mote", "--id", "5", "--radio", air, "--app", "-", "--seed", "2",
                             "--target", target, "--log", log)
         mote.call("join", type=1, transducers=3, actuators=2)

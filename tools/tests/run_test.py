@@ -73,7 +73,7 @@ class Node(Running):
         self.process.stdin.flush()
 
 
-class Run(LiveTest):
+class IslandTest(LiveTest):
     program = Node
 
     def island(self, kept):
@@ -85,6 +85,8 @@ class Run(LiveTest):
         base.waits_for(rb"(connected)")
         return sink, base, air
 
+
+class Run(IslandTest):
     def test_an_island_keeps_the_rules(self):
         kept = self.folder / "run.pcapng"
         sink, base, air = self.island(kept)
