@@ -153,7 +153,8 @@ class ForwarderClientTest(unittest.TestCase):
             number = int.from_bytes(sink.packet()[17:19], "big")
             self.assertEqual(sink.news(), f"send_result({number})")
             self.assertEqual(sink.news(), f"ack_received(5 {number} fail)")
-            self.assertGreaterEqual(time.monotonic() - started, 1000 * TICK_S)
+            # The node may count from the tick in which the call came: up to one less.
+            self.assertGreater(time.monotonic() - started, 999 * TICK_S)
             sink.call("send(dest=11 app_id=5)")
             sink.call("send(dest=12:5 app_id=5 reliable=0 data=x)")
             self.assertRegex(sink.news(), r"send_result\(\d+\)")
