@@ -15,15 +15,16 @@ import unittest
 
 import pandas
 
-RUBRIC = sys.argv.pop(1)
+import testing
+from testing import FIRMWARE
+
 QUERY = sys.argv.pop(1) if len(sys.argv) > 1 else None
-FIRMWARE = pathlib.Path("spec/captures/firmware")
 
 
 def rubric(*words):
-    done = subprocess.run([RUBRIC, "decode", *map(str, words)], capture_output=True, check=False)
-    assert done.returncode in (0, 1), done.stderr
-    return done.stdout.decode()
+    code, out, err = testing.rubric("decode", *words)
+    assert code in (0, 1), err
+    return out
 
 
 class Tables(unittest.TestCase):

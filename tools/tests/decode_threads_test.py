@@ -9,20 +9,19 @@ import pathlib
 import random
 import shutil
 import subprocess
-import sys
 import tempfile
 import unittest
 
-RUBRIC = sys.argv[1]
-FIRMWARE = pathlib.Path(__file__).resolve().parents[2] / "spec/captures/firmware"
+import testing
+from testing import FIRMWARE, RUBRIC
+
 LONG_BYTES = 64 << 20  # From here on all cores decode by themselves.
 PATIENCE_S = 300
 UNREADABLE, OUTPUT = 66, 74
 
 
 def run(*words):
-    done = subprocess.run([RUBRIC, "decode", *map(str, words)], stdin=subprocess.DEVNULL,
-                          check=False, capture_output=True, timeout=PATIENCE_S)
+    done = testing.run("decode", *words)
     return done.returncode, hashlib.sha256(done.stdout).hexdigest(), len(done.stdout), done.stderr
 
 
@@ -83,4 +82,4 @@ class Threads(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1])
+    unittest.main()

@@ -9,31 +9,28 @@ import pathlib
 import shutil
 import signal
 import subprocess
-import sys
-import tempfile
 import time
 import unittest
 
-RUBRIC = sys.argv[1]
-FIRMWARE = pathlib.Path(__file__).resolve().parents[2] / "spec/captures/firmware"
+import testing
+from testing import FIRMWARE, RUBRIC
+
 CAPTURES = sorted(FIRMWARE.glob("*.pcapng"))
 PATIENCE_S = 60
 FAILED, INCONCLUSIVE, BROKEN, USAGE, UNREADABLE, OUTPUT = 1, 3, 2, 64, 66, 74
 
 
 def run(*words, **how):
-    return subprocess.run([RUBRIC, *map(str, words)], stdin=subprocess.DEVNULL, check=False,
-                          capture_output=True, text=True, timeout=PATIENCE_S, **how)
+    return testing.run(*words, text=True, timeout=PATIENCE_S, **how)
 
 
 def lines(text):
     return [json.loads(line) for line in text.splitlines()]
 
 
-class Each(unittest.TestCase):
+class Each(testing.Folder):
     def setUp(self):
-        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="rubric-each-"))
-        self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
+        super().setUp()
         self.runs = self.folder / "runs"
         (self.runs / "deep").mkdir(parents=True)
         for i, capture in enumerate(CAPTURES):
@@ -216,4 +213,4 @@ class Each(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1])
+    unittest.main()

@@ -16,14 +16,15 @@ import sys
 import tempfile
 import unittest
 
-RUBRIC = str(pathlib.Path(sys.argv.pop(1)).resolve())
+import testing
+from testing import RUBRIC
+
 DIAGRAMS = pathlib.Path(__file__).resolve().parent / "expect/transitions.txt"
 FAULTS = ["--loss", "--dup"]
 
 
 def explore(*words):
-    return subprocess.run([RUBRIC, "explore", *words], stdout=subprocess.PIPE, text=True,
-                          stderr=subprocess.PIPE, timeout=300)
+    return testing.run("explore", *words, text=True)
 
 
 class Explore(unittest.TestCase):

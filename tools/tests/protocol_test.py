@@ -7,27 +7,18 @@ Usage: protocol_test.py RUBRIC
 import json
 import pathlib
 import shutil
-import subprocess
-import sys
-import tempfile
 import unittest
 import xml.etree.ElementTree
 
-RUBRIC = str(pathlib.Path(sys.argv.pop(1)).resolve())
+import testing
+
 CTP = pathlib.Path("conformance/protocols/ctp").resolve()
 CTP_NODE = f"python3 {CTP}/node.py"
 
 
-class Protocol(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-
+class Protocol(testing.Folder):
     def rubric(self, *words):
-        done = subprocess.run([RUBRIC, *map(str, words)], cwd=self.folder, capture_output=True,
-                              text=True)
-        return done.returncode, done.stdout, done.stderr
+        return testing.rubric(*words, cwd=self.folder)
 
     def new(self):
         """A folder that new-protocol has just written, and a node whose mistake it names."""
