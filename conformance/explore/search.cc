@@ -118,7 +118,7 @@ class Worker {
     reduce(world_, pending.ways_on);
     pending.keys.clear();
     for (const Successor& s : pending.ways_on) {
-      Packed packed = packer.pack(s.world);
+      Packed packed = packer.pack(s.world, &world_, packed_);
       const std::size_t same = packer.sort(packed);
       pending.keys.push_back({packed, packer.key(packed), same});
       visited_.prefetch(pending.keys.back().key.bits);

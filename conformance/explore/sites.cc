@@ -92,17 +92,32 @@ SiteId Packer::find(std::size_t node, const Site& site) {
   return id;
 }
 
-Packed Packer::pack(const World& world) {
+Packed Packer::pack(const World& world, const World* other, const Packed& packed_other) {
   Packed out;
   out.doubled = static_cast<std::uint8_t>(world.doubled);
+  const auto end_of = [](const World& of, std::size_t node, std::size_t i) {
+    while (i < of.copies && of.copy[i].sender() == node) ++i;
+    return i;
+  };
   std::size_t i = 0;
+  std::size_t k = 0;  // In `other`.
   for (std::size_t node = 0; node < count_; ++node) {
-    Site site;
-    site.node = world.node[node];
-    for (; i < world.copies && world.copy[i].sender() == node; ++i) {
-      site.copy[site.copies++] = world.copy[i].frame();
+    const auto first = world.copy.begin() + static_cast<std::ptrdiff_t>(i);
+    const std::size_t end = end_of(world, node, i);
+    const std::size_t other_end = other == nullptr ? k : end_of(*other, node, k);
+    // A step changes one site or two, and to compare costs less than to look up.
+    if (other != nullptr && world.node[node] == other->node[node] && end - i == other_end - k &&
+        std::equal(first, first + static_cast<std::ptrdiff_t>(end - i),
+                   other->copy.begin() + static_cast<std::ptrdiff_t>(k))) {
+      out.site[node] = packed_other.site[node];
+      i = end;
+    } else {
+      Site site;
+      site.node = world.node[node];
+      for (; i < end; ++i) site.copy[site.copies++] = world.copy[i].frame();
+      out.site[node] = find(node, site);
     }
-    out.site[node] = find(node, site);
+    k = other_end;
   }
   return out;
 }
@@ -148,6 +163,7 @@ Packed Packer::exchanged(const Packed& packed, std::size_t g) {
 }
 
 std::size_t Packer::sort(Packed& packed) {
+  if (from_.size() == 1) return 1;
   const Packed given = packed;
   std::size_t same = 1;
   for (std::size_t g = 1; g < from_.size(); ++g) {

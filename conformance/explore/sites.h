@@ -74,7 +74,8 @@ class Packer {
  public:
   Packer(Nodes& nodes, Sites& sites, const Network& network);
 
-  Packed pack(const World& world);
+  /// Packs a state. If `other` is given, most nodes are as in that one, packed as `packed_other`.
+  Packed pack(const World& world, const World* other = nullptr, const Packed& packed_other = {});
   void unpack(const Packed& packed, World& world) const;
   /// Makes of the state the first of its orbit. Returns how many permutations leave that as it is.
   std::size_t sort(Packed& packed);
