@@ -15,6 +15,7 @@ class Ring {
   bool full() const { return count_ == kRoom; }
   /// Returns the i-th newest; i < size().
   T& newest(std::size_t i) { return items_[(next_ + kRoom - 1 - i) % kRoom]; }
+  const T& newest(std::size_t i) const { return items_[(next_ + kRoom - 1 - i) % kRoom]; }
   /// Returns the i-th oldest; i < size().
   T& oldest(std::size_t i) { return items_[(next_ + kRoom - count_ + i) % kRoom]; }
   T& push(const T& item) {

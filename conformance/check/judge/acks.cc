@@ -29,6 +29,7 @@ void Acks::arrived(std::uint16_t node, const Observation& seen, std::uint16_t se
   arrived.ackable = arrived.forbidden == ReqId::kNone &&
                     machine::must_ack(net.reliable == 1, net.dest, net.trans_id, net.app_id);
   arrived.must_ack = arrived.ackable && !arrival.free;
+  arrived.doubtful = arrival.doubtful;
   const bool known = net.sound && net.reliable <= 1 && net.trans_id == component::kConnless &&
                      machine::is_known_app(net.app_id);
   if (known && !arrival.free && arrived.forbidden == ReqId::kNone) {
@@ -60,6 +61,8 @@ void Acks::surely(std::uint16_t node, const Net& net, std::int64_t now_us) {
     Arrived& arrived = ring.newest(i);
     if (!same_message(arrived.net, net)) continue;
     if (arrived.must_ack && !arrived.sure && arrived.acks == 0) ++owed_[node];
+    if (!arrived.sure)
+      arrived.order = ++orders_[node].came;  // Others sent later may have come first.
     arrived.sure = true;
     arrived.whole_us = std::max(arrived.whole_us, now_us);
     arrived.net = net;  // As it was given, perhaps without the bytes after its content.
@@ -306,7 +309,7 @@ void Acks::missing_ack(std::uint16_t node, Arrived& arrived, std::int64_t now_us
       device.role == machine::Role::kMote ||
       (device.role == machine::Role::kSink && arrived.net.src.devid != machine::kNullDevid);
   Severity severity = Severity::kFail;
-  if (context_.crowded(node, arrived.place.time_us) ||
+  if (arrived.doubtful || context_.crowded(node, arrived.place.time_us) ||
       context_.who.damaged(arrived.place.time_us, now_us)) {
     severity = Severity::kInconclusive;
   } else if (by_radio) {

@@ -51,7 +51,8 @@ struct Arrived {
   ReqId forbidden = ReqId::kNone;  ///< Acking or delivering it breaks this rule.
   bool weak = false;
   bool must_ack = false;
-  bool ackable = false;  ///< Apart from `free`: reliable, and so on.
+  bool ackable = false;   ///< Apart from `free`: reliable, and so on.
+  bool doubtful = false;  ///< The node may not be a member.
   ReqId delivers =
       ReqId::kNone;         ///< Why the application gets it, if it arrived; kNone: it need not.
   bool sure = false;        ///< It surely arrived.
@@ -67,6 +68,7 @@ struct Arrival {
   bool weak = false;               ///< And that rule is a SHOULD.
   bool sure = false;               ///< The node surely received it.
   bool free = false;               ///< The node may ignore it.
+  bool doubtful = false;           ///< The node may not be a member, and then must ignore it.
   ReqId delivers = ReqId::kNone;   ///< Why the application gets it; kNone: it need not.
 };
 

@@ -27,18 +27,26 @@ Forwarding::Forwarding(Context& context) : context_(context) {
   for (std::size_t i = 0; i < context.who.devices.size(); ++i) {
     const Device& device = context.who.devices[i];
     if (device.role != Role::kSink || !device.known) continue;
-    Line line;
+    Line& line = lines_.emplace_back();
     line.sink = static_cast<std::uint16_t>(i);
     line.am = device.am;
     line.island = device.island;
     line.serial = device.shows_line();
     line.slack_us = device.whole ? context.response_us() : kIslandSlackUs;
-    lines_.push_back(std::move(line));
   }
 }
 
 bool Forwarding::Line::changing(std::int64_t time_us) const {
   return std::abs(time_us - island_changed_us) < slack_us;
+}
+
+bool Forwarding::holds(const Ring<Passing, kRoom>& ring, const Net& net, bool waiting) {
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const Passing& passing = ring.newest(i);
+    const bool wanted = !waiting || passing.passed < passing.copies;
+    if (wanted && same_message(passing.net, net)) return true;
+  }
+  return false;
 }
 
 Forwarding::Line* Forwarding::find(std::uint16_t sink) {
@@ -49,8 +57,7 @@ Forwarding::Line* Forwarding::find(std::uint16_t sink) {
 void Forwarding::set_island(std::uint16_t sink, std::uint16_t island, std::int64_t now_us,
                             bool sure) {
   Line* const line = find(sink);
-  if (line == nullptr) return;
-  if (line->island == island) return;
+  if (line == nullptr || line->island == island) return;
   // It may pass on as the sink of either island what still waits.
   forget_owed(line->up, line->owed_up);
   forget_owed(line->down, line->owed_down);
@@ -449,14 +456,15 @@ void Forwarding::showed_life(std::uint16_t sink, std::int64_t now_us) {
   if (line != nullptr && line->owed_down > 0) overdue_down(*line, now_us);
 }
 
+bool Forwarding::came_up(std::uint16_t sink, const Net& net) {
+  const Line* const line = find(sink);
+  return line != nullptr && holds(line->up, net, true);
+}
+
 bool Forwarding::came_down(std::uint16_t sink, const Net& net) {
-  return std::ranges::any_of(lines_, [&](Line& line) {
-    if (line.sink != sink && context_.device(sink).hearing) return false;
-    for (std::size_t i = 0; i < line.down.size(); ++i) {
-      const Passing& passing = line.down.newest(i);
-      if (passing.passed < passing.copies && same_message(passing.net, net)) return true;
-    }
-    return false;
+  return std::ranges::any_of(lines_, [&](const Line& line) {
+    const bool may = line.sink == sink || !context_.device(sink).hearing;
+    return may && holds(line.down, net, true);
   });
 }
 
@@ -480,9 +488,9 @@ bool Forwarding::may_be_anothers(const Line& line, const Net& net) {
 // Returns whether a buffer may have been full (decision 122): so many messages came around that
 // time, or a line was busy.
 bool Forwarding::crowded(const Line& line, const Passing& passing, Link out) const {
-  const std::int64_t time_us = passing.place.time_us;
-  const std::int64_t due_us = passing.whole_us + context_.response_us();
-  return context_.busy(line.sink, time_us, due_us, out) || context_.crowded(line.sink, time_us);
+  const std::int64_t from_us = passing.place.time_us;
+  return context_.busy(line.sink, from_us, passing.whole_us + context_.response_us(), out) ||
+         context_.crowded(line.sink, from_us);
 }
 
 void Forwarding::somebody_sent(const Net& net) {
@@ -527,17 +535,6 @@ void Forwarding::refuse_down(Line& line, const Observation& seen, const Net& net
   if (best->passed < 255) ++best->passed;
 }
 
-// Returns whether the same message came down another sink's line, which may have radiated it.
-bool Forwarding::also_elsewhere(const Line& line, const Net& net) {
-  return std::any_of(lines_.begin(), lines_.end(), [&](Line& other) {
-    if (&other == &line) return false;
-    for (std::size_t i = 0; i < other.down.size(); ++i) {
-      if (same_message(other.down.newest(i).net, net)) return true;
-    }
-    return false;
-  });
-}
-
 // Reports what was surely received and is missing though the sink has shown life long after.
 void Forwarding::overdue_up(Line& line, std::int64_t now_us) {
   if (now_us < 0) return;
@@ -570,8 +567,10 @@ void Forwarding::overdue_down(Line& line, std::int64_t now_us) {
     if (!passing.owed || now_us <= due_us) continue;
     passing.owed = false;
     --line.owed_down;
-    const bool open =
-        !passing.sure || crowded(line, passing, Link::kRadio) || also_elsewhere(line, passing.net);
+    const bool elsewhere = std::ranges::any_of(lines_, [&](const Line& other) {
+      return &other != &line && holds(other.down, passing.net, false);  // It may have radiated it.
+    });
+    const bool open = !passing.sure || elsewhere || crowded(line, passing, Link::kRadio);
     const Severity severity =
         open ? Severity::kInconclusive : context_.without(line.sink, passing.place.time_us, now_us);
     context_.report("N7-RADIO"_rule, context_.on_line(line.sink, severity), passing.place,

@@ -44,6 +44,8 @@ class Forwarding {
   /// Returns whether the same message came down the sink's serial line, or one that may be its, and
   /// was not yet radiated.
   bool came_down(std::uint16_t sink, const Net& net);
+  /// Returns whether the same message was heard by the sink's radio, and was not yet passed on.
+  bool came_up(std::uint16_t sink, const Net& net);
   /// Judges a message on its serial line that is not the sink's own.
   void sent_on_serial(std::uint16_t sink, const Observation& seen, const Net& net);
   /// Judges a message by radio that is not the sink's own.
@@ -98,6 +100,8 @@ class Forwarding {
 
   Line* find(std::uint16_t sink);
   void store(Ring<Passing, kRoom>& ring, const Passing& passing, std::uint32_t& owed);
+  /// Returns whether the message is among these, `waiting`: not yet passed on.
+  static bool holds(const Ring<Passing, kRoom>& ring, const Net& net, bool waiting);
   static void forget_owed(Ring<Passing, kRoom>& ring, std::uint32_t& owed);
   void pass_up(Line& line, Passing& passing, const Observation& seen);
   void pass_down(Line& line, Passing& passing, const Observation& seen, const Net& net);
@@ -107,7 +111,6 @@ class Forwarding {
   void overdue_up(Line& line, std::int64_t now_us);
   void overdue_down(Line& line, std::int64_t now_us);
   bool crowded(const Line& line, const Passing& passing, machine::Link out) const;
-  bool also_elsewhere(const Line& line, const Net& net);
   bool may_be_anothers(const Line& line, const Net& net);
   void unheard(Line& line, const Passing& passing);
   void judge_order(Line& line, const Passing& passing, const Observation& seen);

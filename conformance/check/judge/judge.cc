@@ -425,7 +425,7 @@ Judge::Standing Judge::standing(std::uint16_t node) const {
   if (!is(node, Role::kMote) || !device.hearing) return Standing::kMember;
   const std::vector<MoteHypothesis>& set = motes_.set(node);
   if (std::any_of(set.begin(), set.end(), [](const auto& h) { return h.unknown; })) {
-    return Standing::kMember;  // Since before the log, presumably.
+    return Standing::kUnknown;  // It may have joined before the log.
   }
   if (motes_.is_outside(node)) return Standing::kOutside;
   // It need not see itself as a member before joined(SUCCESS) (decisions 102, 118).
@@ -459,7 +459,7 @@ void Judge::hears(std::uint16_t node, const machine::Router& router, machine::Li
   const bool on = !interfaces_.switched_off(node, from);
   acks_.arrived(node, seen, sender, net,
                 {forbidden, forbidden == "N6-OTHER"_rule, sure && on, straight,
-                 owed ? route.delivered : ReqId::kNone});
+                 standing == Standing::kUnknown, owed ? route.delivered : ReqId::kNone});
   if (sure && !off && route.deliver) synaptic_.given(node, seen, net, on);
   const bool exact = net.dest == router.own && owed && !straight && on && !off;
   if (sure && exact && forbidden == ReqId::kNone && context_.options.start_cold) {
@@ -534,7 +534,9 @@ void Judge::whole(const Observation& seen, std::uint16_t sender) {
 void Judge::up_serial(const Observation& seen, const Mark& mark, std::uint16_t sink,
                       const Net& net) {
   SerialJoined joined;
-  if (parse_serial_joined(net, joined)) {
+  // What an application sends may look like one.
+  const bool passes = forwarding_.came_up(sink, net) || originals_.asked(sink, net);
+  if (!passes && parse_serial_joined(net, joined)) {
     announcements_.report(sink, seen, net, joined);
     return base_station_hears(sink, seen, mark, net);
   }

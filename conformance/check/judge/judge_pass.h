@@ -54,7 +54,7 @@ class Judge {
     return who_.devices[node].whole && seen.kind == Observation::Kind::kSerial &&
            seen.frame.payload.size() < rubicon::NetMsgView::kMaxSizeBytes;
   }
-  enum class Standing : std::uint8_t { kOutside, kPerhaps, kMember };
+  enum class Standing : std::uint8_t { kOutside, kUnknown, kPerhaps, kMember };
   Standing standing(std::uint16_t node) const;
   void mote_hears(std::uint16_t mote, const Observation& seen, const Mark& mark, const Net& net);
   void hears(std::uint16_t node, const machine::Router& router, machine::Link from,

@@ -159,6 +159,18 @@ void Originals::judge_result(std::uint16_t node, const Observation& seen, const 
                    {}});
 }
 
+bool Originals::asked(std::uint16_t node, const Net& net) const {
+  const Ring<Call, kRoom>& calls = calls_[node];
+  for (std::size_t i = 0; i < calls.size(); ++i) {
+    const Call& one = calls.newest(i);
+    const std::size_t size = std::min(one.send->data.size(), net.body().size());
+    const bool same = one.send->app_id == net.app_id && one.send->dest.devid == net.dest.devid &&
+                      equal(one.send->data, net.body().first(size));  // Old bytes may follow.
+    if (same && !one.left) return true;
+  }
+  return false;
+}
+
 // Judges what a message wraps by the calls of its application, which a log shows.
 void Originals::judge_wrap(std::uint16_t node, const Observation& seen, const Net& net, Link link) {
   if (!net.sound || net.is_ack() || net.trans_id == component::kSynChannel) return;

@@ -39,6 +39,9 @@ class Originals {
   /// Notes that an interface was switched off, so that what waits may be lost.
   void interrupted(std::uint16_t node);
   void told(std::uint16_t node, const Observation& seen, const machine::SendResult& result);
+  /// Returns whether a call of its application, by a log, asked for such a message that did not
+  /// leave yet.
+  bool asked(std::uint16_t node, const Net& net) const;
   /// Judges a message of its own that `node`, whose address is `own`, sends over `link`.
   void sent(std::uint16_t node, const Observation& seen, const Net& net, machine::Link link,
             machine::Address own);

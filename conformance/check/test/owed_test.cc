@@ -165,5 +165,55 @@ case log
   EXPECT_EQ(found(head + goes, Severity::kWeak), "N8-PEIS");
 }
 
+TEST(Owed, NoAckOfANodeThatMayBeOutside) {
+  RunReader reader;
+  std::string error;
+  const std::string later = mote(3000, "< app get_clock()");
+  ASSERT_TRUE(reader.add_bytes("log", kMote + to_mote(true) + later, error)) << error;
+  for (const Finding& finding : judge(reader.finish(), {}).findings) {
+    EXPECT_LT(finding.severity, Severity::kFail) << finding.text;
+  }
+  EXPECT_EQ(of_mote(kJoins + to_mote(true) + kDelivers), "T2-ACK");
+}
+
+constexpr const char* kIsland = R"(%rtr 1  %profile paper  %tick ms
+%node m5 mote id=5 iut whole
+%node sA sink id=1 island=11 iut whole
+%node bA base_station island=11 iut whole
+%link serA serial sA bA
+case log
+)";
+
+// The mote sends first; what the base station sends comes first.
+TEST(Owed, TheOrderInWhichTwoLinesBringMessages) {
+  const std::string by_radio = "rA am=5->1 am(28 x000b0001000b0005000064040305beef)";
+  const std::string by_serial = "serA am=0->1 am(28 x000b0001000bfffd000065040305cafe)";
+  const std::string came = kIsland + at(1000, "m5 > " + by_radio) + at(1001, "bA > " + by_serial) +
+                           at(1002, "sA < " + by_serial) + at(1003, "sA < " + by_radio);
+  const std::string one = at(1005, "sA > app received(11:null mockup xcafe)");
+  const std::string other = at(1005, "sA > app received(11:5 mockup xbeef)");
+  EXPECT_EQ(found(came + one + other, Severity::kFail).find("N2-IN-ORDER"), std::string::npos);
+  EXPECT_NE(found(came + other + one, Severity::kFail).find("N2-IN-ORDER"), std::string::npos);
+}
+
+// A message of an application that looks like an announcement is none: the sink forwards what its
+// radio heard, or sends what its own application asked for.
+TEST(Owed, WhatOnlyLooksLikeAnAnnouncement) {
+  const std::string body = "10000c000902000102";  // Of 12:9, which is of another island.
+  const auto goes = [&](const std::string& src) {
+    return "am(28 x000bfffd000b" + src + "0000640b030a" + body + ")";
+  };
+  const std::string of_mote = kIsland + at(1000, "m5 > rA am=5->1 " + goes("0005")) +
+                              at(1002, "sA < rA am=5->1 " + goes("0005")) +
+                              at(1004, "sA > serA am=0->all " + goes("0005"));
+  EXPECT_EQ(found(of_mote, Severity::kFail).find("J6-CONTENT"), std::string::npos);
+  const std::string sent = at(1004, "sA > serA am=0->all " + goes("0001"));
+  const std::string asked = kIsland +
+                            at(1000, "sA < app send(11:null control_layer 0 x" + body + ")") +
+                            at(1000, "sA > app send_result(100)") + sent;
+  EXPECT_EQ(found(asked, Severity::kFail).find("J6-CONTENT"), std::string::npos);
+  EXPECT_NE(found(kIsland + sent, Severity::kFail).find("J6-CONTENT"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace rubric::check
