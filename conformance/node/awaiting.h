@@ -30,7 +30,8 @@ class Awaiting {
 
   /// Adds a reliable message that is accepted; not when full().
   void add(uint16_t seq_num, uint8_t app_id, Address dest);
-  /// Starts its time, which ends at `due`, since the line has it. (decision 110)
+  /// Starts its time, which ends at `due`, since the line has it. (decision 110) It runs once,
+  /// though a broadcast may come back and be forwarded (decision 150).
   void left(uint16_t seq_num, Ticks due);
   void hear(Address from, uint8_t app_id, uint16_t seq_num, Application& application);
   void run(Ticks now, Application& application);
@@ -75,7 +76,7 @@ inline void Awaiting::add(uint16_t seq_num, uint8_t app_id, Address dest) {
 
 inline void Awaiting::left(uint16_t seq_num, Ticks due) {
   AwaitedAck* const entry = find(seq_num);
-  if (entry == nullptr) return;
+  if (entry == nullptr || entry->running) return;
   entry->running = true;
   entry->due = due;
 }

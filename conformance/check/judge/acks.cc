@@ -55,7 +55,7 @@ void Acks::repeated(std::uint16_t node, const Net& net) {
   }
 }
 
-void Acks::surely(std::uint16_t node, const Net& net, std::int64_t now_us) {
+void Acks::surely(std::uint16_t node, const Net& net, std::int64_t now_us, bool may) {
   Ring<Arrived, kRoom>& ring = arrived_[node];
   for (std::size_t i = 0; i < ring.size(); ++i) {
     Arrived& arrived = ring.newest(i);
@@ -66,6 +66,10 @@ void Acks::surely(std::uint16_t node, const Net& net, std::int64_t now_us) {
     arrived.sure = true;
     arrived.whole_us = std::max(arrived.whole_us, now_us);
     arrived.net = net;  // As it was given, perhaps without the bytes after its content.
+    if (may && (arrived.forbidden == "N10-OFF"_rule || arrived.forbidden == "J11-HEAR"_rule)) {
+      arrived.forbidden = ReqId::kNone;
+      arrived.ackable = machine::must_ack(net.reliable == 1, net.dest, net.trans_id, net.app_id);
+    }
     return;
   }
 }

@@ -82,7 +82,8 @@ class Acks {
                const Arrival& arrival);
   void repeated(std::uint16_t node, const Net& net);
   /// Notes that by a log the node received the message.
-  void surely(std::uint16_t node, const Net& net, std::int64_t now_us);
+  /// `may`: it is on then, and may be a member, whatever it was when the message was sent.
+  void surely(std::uint16_t node, const Net& net, std::int64_t now_us, bool may);
   /// Judges an ack that `node` sends as a message of its own.
   void sent(std::uint16_t node, const Observation& seen, const Net& ack);
   /// Judges a message that by a log the application of `node` got.

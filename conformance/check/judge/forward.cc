@@ -218,12 +218,13 @@ void Forwarding::surely_down(std::uint16_t sink, const Net& net, std::int64_t no
 }
 
 void Forwarding::judge_order(Line& line, const Passing& passing, const Observation& seen) {
-  const Link out = seen.frame.link;
-  const bool up = out == Link::kSerial;
-  std::uint64_t& last = up ? line.last_up : line.last_down;
-  const bool late = passing.order < last && !passing.twin;
-  last = std::max(last, passing.order);
-  if (late) {
+  const bool up = seen.frame.link == Link::kSerial;
+  Line::Last& last = up ? line.last_up : line.last_down;
+  const bool log = context_.device(line.sink).hearing;
+  // Frames that overlap on the air have no order; which of two alike was passed on, nobody knows.
+  const bool unclear = passing.twin || (up && !log && passing.whole_us > last.begun_us);
+  if (passing.order > last.order && !passing.twin) last = {passing.order, passing.place.time_us};
+  if (passing.order < last.order && !unclear) {
     context_.report("N2-ORDER"_rule, context_.on_line(line.sink, Severity::kFail), seen.place,
                     line.sink,
                     {std::string("The sink ") + (up ? "forwards " : "radiates ") +
@@ -231,7 +232,7 @@ void Forwarding::judge_order(Line& line, const Passing& passing, const Observati
                      "Messages leave in the order in which they came.",
                      {}});
   } else if (!passing.twin && passing.copies == 1) {
-    context_.left(line.sink, out, seen.place, passing.whole_us,
+    context_.left(line.sink, seen.frame.link, seen.place, passing.whole_us,
                   passing.whole_us + context_.response_us(), name_of(passing.net));
   }
 }

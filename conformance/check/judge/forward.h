@@ -91,8 +91,13 @@ class Forwarding {
     Ring<Passing, kRoom> down;        ///< From serial.
     Ring<Passing, kEarlyRoom> early;  ///< On serial before the radio stamp, by skew of the taps.
     std::uint64_t order = 0;
-    std::uint64_t last_up = 0;  ///< The order of the latest that was passed on.
-    std::uint64_t last_down = 0;
+    /// The latest that was passed on.
+    struct Last {
+      std::uint64_t order = 0;
+      std::int64_t begun_us = INT64_MAX;
+    };
+    Last last_up;
+    Last last_down;
     std::uint32_t owed_up = 0;
     std::uint32_t owed_down = 0;
     Stale stale;  ///< On its serial line.

@@ -341,7 +341,8 @@ void Judge::repeated(std::uint32_t index, const Observation& seen, const Mark& m
 // Takes a log's line that gives a node a message that is known from its sender.
 void Judge::surely(const Observation& seen, const Mark& mark, const Net& net) {
   if (interfaces_.switched_off(mark.receiver, seen.frame.link)) return;
-  acks_.surely(mark.receiver, net, seen.place.time_us);
+  acks_.surely(mark.receiver, net, seen.place.time_us,
+               standing(mark.receiver) != Standing::kOutside);
   if (seen.kind == Kind::kRadio) synaptic_.given(mark.receiver, seen, net);
   if (net.is_ack()) originals_.ack_given(mark.receiver, net, seen.place.time_us);
   if (seen.kind == Kind::kRadio) {
@@ -424,9 +425,8 @@ Judge::Standing Judge::standing(std::uint16_t node) const {
   const Device& device = who_.devices[node];
   if (!is(node, Role::kMote) || !device.hearing) return Standing::kMember;
   const std::vector<MoteHypothesis>& set = motes_.set(node);
-  if (std::any_of(set.begin(), set.end(), [](const auto& h) { return h.unknown; })) {
-    return Standing::kUnknown;  // It may have joined before the log.
-  }
+  // It may have joined before the log.
+  if (std::ranges::any_of(set, &MoteHypothesis::unknown)) return Standing::kUnknown;
   if (motes_.is_outside(node)) return Standing::kOutside;
   // It need not see itself as a member before joined(SUCCESS) (decisions 102, 118).
   const bool sure = motes_.address(node) && (!device.application || motes_.surely_member(node));
@@ -535,12 +535,10 @@ void Judge::up_serial(const Observation& seen, const Mark& mark, std::uint16_t s
                       const Net& net) {
   SerialJoined joined;
   // What an application sends may look like one.
-  const bool passes = forwarding_.came_up(sink, net) || originals_.asked(sink, net);
-  if (!passes && parse_serial_joined(net, joined)) {
+  if (!forwarding_.came_up(sink, net) && !originals_.asked(sink, net) &&
+      parse_serial_joined(net, joined)) {
     announcements_.report(sink, seen, net, joined);
-    return base_station_hears(sink, seen, mark, net);
-  }
-  if (sinks_.is_own(sink, net.src, seen.place.time_us)) {
+  } else if (sinks_.is_own(sink, net.src, seen.place.time_us)) {
     own_message(sink, seen, net, machine::Link::kSerial, net.src);
   } else {
     acks_.showed_life(sink, seen.place.time_us);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <utility>
 
 namespace rubric::check {
 namespace {
@@ -13,8 +14,9 @@ const machine::Channel* find(const machine::Synaptic& channels, machine::Channel
   return nullptr;
 }
 
-constexpr std::size_t kTickCrowd = 2;  // So many other frames may have filled a buffer.
-constexpr std::size_t kBufferMax = 4;  // And so many channels (decision 122).
+constexpr std::size_t kTickCrowd = 2;        // So many other frames may have filled a buffer.
+constexpr std::int64_t kTickGapUs = 30'000;  // Between the frames of one tick.
+constexpr std::size_t kBufferMax = 4;        // And so many channels (decision 122).
 
 }  // namespace
 
@@ -216,10 +218,15 @@ void SynapticWatch::sent(std::uint16_t device, const Observation& seen, const Ne
                      {}});
   }
   const std::int64_t least = machine::us_of(node.channels.period_ticks) - context_.early_us();
+  // The data of one tick leave one after the other, and the tick was before the first.
+  if (node.data_us < 0 || now - node.data_us > kTickGapUs) node.tick_us = now;
+  node.data_us = now;
+  const std::int64_t last_tick_us = std::exchange(out->tick_us, node.tick_us);
   // What had to wait for the channel is nearer to the next.
   const bool steady = out->sent_us >= 0 && node.step_us < out->sent_us &&
+                      (node.on_us == 0 || node.on_us < out->sent_us - context_.response_us()) &&
                       !context_.busy(device, out->sent_us - context_.response_us(), out->sent_us);
-  if (steady && now - out->sent_us < least) {
+  if (steady && now - last_tick_us < least) {
     context_.report(
         "S2-TICK"_rule, Severity::kFail, seen.place, device,
         {"Data of one channel " + ms_text(now - out->sent_us) + " apart.",
@@ -293,6 +300,7 @@ void SynapticWatch::note_inputs(Node& node, const machine::Synaptic& before, std
       in->ended_us = now_us;
       in->local = is_local(node, channel);
     }
+    if (in != nullptr) in->peer = channel.peer;
   }
   for (In& in : node.ins) {
     const bool ran = started(before, in.id);
@@ -341,7 +349,8 @@ void SynapticWatch::given(std::uint16_t device, const Observation& seen, const N
   const std::size_t at = in->data_next++ % in->data_us.size();
   in->data_us[at] = seen.place.time_us;
   // Data of a mote of another island is not its peer's; a sink may have peers there.
-  in->data_sure[at] = sure && (net.src.pid == net.dest.pid || net.src.devid == context_.sink_am);
+  const bool its = net.src.pid == net.dest.pid || net.src.devid == context_.sink_am;
+  in->data_sure[at] = sure && (in->peer.pid == machine::kLocalPid ? its : net.src == in->peer);
 }
 
 void SynapticWatch::owed(std::uint16_t device, const Observation& seen, const Net& net) {

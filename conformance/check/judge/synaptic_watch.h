@@ -54,6 +54,7 @@ class SynapticWatch {
     std::int64_t waits_us = -1;                  ///< Silence counts from here.
     Ticks ticks;
     std::int64_t sent_us = -1;     ///< The last data; -1: none since it was started.
+    std::int64_t tick_us = -1;     ///< When the data of their tick began to leave.
     std::int64_t written_us = -1;  ///< The last write that changed something.
     std::uint32_t written = 0;     ///< Bit i: connection i was written.
     std::int64_t silent_us = -1;   ///< When it was stopped or disposed; -1: it runs.
@@ -69,6 +70,7 @@ class SynapticWatch {
   };
   struct In {
     machine::ChannelId id = 0;
+    machine::Address peer;
     bool local = false;          ///< From the node itself.
     std::int64_t begun_us = -1;  ///< Running since; -1: it does not run.
     std::int64_t ended_us = -1;  ///< Stopped or disposed, or created and not started, then.
@@ -90,6 +92,8 @@ class SynapticWatch {
   struct Node {
     std::vector<Unknown> unknowns;
     std::vector<machine::ChannelId> perhaps;  ///< Calls that the model refused; who knows.
+    std::int64_t data_us = -1;                ///< The last data of any channel.
+    std::int64_t tick_us = -1;                ///< When those of their tick began to leave.
     bool logged = false;                      ///< Its log has the calls that create channels.
     machine::Address own;                     ///< As known at the last call.
     std::int64_t settled_us = -1;             ///< What was owed until then is judged.

@@ -196,6 +196,39 @@ TEST(Owed, TheOrderInWhichTwoLinesBringMessages) {
   EXPECT_NE(found(came + other + one, Severity::kFail).find("N2-IN-ORDER"), std::string::npos);
 }
 
+TEST(Owed, TheOrderOfMessagesThatAreAlike) {
+  const std::string one = "am(28 x000bfffd000b0002000064040305beef)";
+  const std::string other = "am(28 x000bfffd000b0003000065040305cafe)";
+  const std::string third = "am(28 x000bfffd000b0003000066040305cafe)";
+  const auto hears = [](int ms, int src, const std::string& net) {
+    return at(ms, "sA < rA am=" + std::to_string(src) + "->1 " + net);
+  };
+  const auto goes = [](int ms, const std::string& net) {
+    return at(ms, "sA > serA am=0->all " + net);
+  };
+  const std::string came =
+      kIsland + hears(1000, 2, one) + hears(1001, 3, other) + hears(1002, 2, one);
+  EXPECT_EQ(found(came + goes(1003, one) + goes(1004, other) + goes(1005, one), Severity::kFail)
+                .find("N2-ORDER"),
+            std::string::npos);
+  EXPECT_NE(
+      found(came + hears(1003, 3, third) + goes(1004, third) + goes(1005, other), Severity::kFail)
+          .find("N2-ORDER"),
+      std::string::npos);
+}
+
+TEST(Owed, WhatComesAfterTheRadioIsOnAgain) {
+  const std::string begin = kIsland + kJoins + at(900, "m5 < app interface(radio off)") +
+                            at(900, "m5 > app op_result(success)") +
+                            at(1000, "sA > rA am=1->all " + net("ffff", "0001"));
+  const std::string on =
+      at(1001, "m5 < app interface(radio on)") + at(1001, "m5 > app op_result(success)");
+  const std::string comes = at(1004, "m5 < rA am=1->all " + net("ffff", "0001")) +
+                            at(1005, "m5 > app received(11:1 mockup xbeef)");
+  EXPECT_EQ(found(begin + on + comes, Severity::kFail).find("N10-OFF"), std::string::npos);
+  EXPECT_NE(found(begin + comes, Severity::kFail).find("N10-OFF"), std::string::npos);
+}
+
 // A message of an application that looks like an announcement is none: the sink forwards what its
 // radio heard, or sends what its own application asked for.
 TEST(Owed, WhatOnlyLooksLikeAnAnnouncement) {

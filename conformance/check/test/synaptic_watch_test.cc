@@ -69,6 +69,24 @@ TEST(SynapticWatch, TicksTooCloseFail) {
             "S2-TICK");
 }
 
+// The data of a tick leave one after the other; the next tick may have only the last of them.
+TEST(SynapticWatch, OneTickSendsForAllChannels) {
+  const auto data_to = [](int ms, const char* devid, int seq_num, const char* bytes) {
+    const std::string number = std::to_string(seq_num);
+    return line(ms, std::string("> rA am=2->") + devid + " am(28 x000b000" + devid +
+                        "000b000200000" + number + "06010b" + bytes + ")");
+  };
+  const std::string tick = data_to(600, "1", 1, "0000803f") + data_to(625, "3", 2, "0000803f") +
+                           data_to(650, "4", 3, "0000803f");
+  const std::string write = line(700, "< app write_output(channel=2->4 pos=0 value=2)");
+  const std::string calls = line(100, "< app create_out(dest=11:1 size=1 mode=power_save)") +
+                            line(100, "< app create_out(dest=11:3 size=1 mode=power_save)") +
+                            line(100, "< app create_out(dest=11:4 size=1 mode=power_save)") +
+                            line(120, "< app start_all()");
+  EXPECT_EQ(fails(calls + tick + write + data_to(1090, "4", 4, "00000040")), "");
+  EXPECT_EQ(fails(calls + tick + write + data_to(1000, "4", 4, "00000040")), "S2-TICK");
+}
+
 TEST(SynapticWatch, AnotherPeriodIsKept) {
   EXPECT_EQ(fails(channel("reliable") + line(130, "< app set_time_step(clock=200)") +
                   data(600, 1, "0000803f") + data(800, 2, "0000803f")),
