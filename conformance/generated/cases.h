@@ -17,7 +17,7 @@ struct CaseUse {
 };
 
 /// By file, then as they stand there; each case once for a rule and a sign.
-inline constexpr std::array<CaseUse, 2033> kCaseUses{{
+inline constexpr std::array<CaseUse, 2036> kCaseUses{{
     {"again_j.call_after_a_failure", "conformance/cases/again_j.rtr", "J8-FAIL"_rule, false},
     {"again_j.call_after_a_failure", "conformance/cases/again_j.rtr", "J1-REQUEST"_rule, false},
     {"again_j.call_after_a_failure", "conformance/cases/again_j.rtr", "J8-RETRY"_rule, false},
@@ -525,6 +525,12 @@ inline constexpr std::array<CaseUse, 2033> kCaseUses{{
     {"t3.sink_twelve_timeouts", "conformance/cases/long_life.rtr", "N1-ROOM"_rule, false},
     {"t3.sink_twelve_timeouts", "conformance/cases/long_life.rtr", "N2-ONCE"_rule, false},
     {"t3.sink_twelve_timeouts", "conformance/cases/long_life.rtr", "T3-TIMEOUT"_rule, false},
+    {"t3.base_station_broadcast_comes_back",
+     "conformance/cases/long_life.rtr", "N1-ROOM"_rule, false},
+    {"t3.base_station_broadcast_comes_back",
+     "conformance/cases/long_life.rtr", "N8-PEIS"_rule, false},
+    {"t3.base_station_broadcast_comes_back",
+     "conformance/cases/long_life.rtr", "T3-TIMEOUT"_rule, false},
     {"t3.base_station_twelve_timeouts", "conformance/cases/long_life.rtr", "N1-ROOM"_rule, false},
     {"t3.base_station_twelve_timeouts", "conformance/cases/long_life.rtr", "N2-ONCE"_rule, false},
     {"t3.base_station_twelve_timeouts",

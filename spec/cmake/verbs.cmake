@@ -34,9 +34,9 @@ if(RUBRIC_FUZZ AND RUBRIC_FUZZ_ENGINE STREQUAL "-fsanitize=fuzzer")
   target_compile_options(rubric_options INTERFACE -fsanitize=fuzzer-no-link)
 endif()
 
-# What a Release build does beside -O2, by what tools/bench gains. WARM: GCC inlines as much in a unit
-# of many files as in one of few. HOT: and -O3, which takes half as long again to compile. COLD, where
-# no benchmark looks: -O1.
+# What a Release build does beside -O2, by what tools/bench gains. WARM: GCC inlines as much in a
+# unit of many files as in one of few. HOT: and -O3, which takes half as long again to compile.
+# COLD, where no benchmark looks: -O1.
 set(RUBRIC_WARM
   "$<$<AND:$<CONFIG:Release>,$<CXX_COMPILER_ID:GNU>>:SHELL:--param inline-unit-growth=1000>")
 set(RUBRIC_HOT $<$<CONFIG:Release>:-O3> ${RUBRIC_WARM})

@@ -14,12 +14,14 @@
 #include "codec/text/text.h"
 #include "conformance/report/sequence_svg.h"
 #include "conformance/test/suite/run.h"
+#include "conformance/trace/protocol.h"
 #include "tools/cli/command.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/input.h"
 #include "tools/cli/output.h"
 #include "tools/cli/terminal.h"
 #include "tools/commands/commands.h"
+#include "tools/commands/protocol_folder.h"
 
 namespace rubric::tools {
 namespace {
@@ -35,6 +37,7 @@ constexpr const char* kChartFooter =
     "  rubric chart j4.wrong_seq\n"
     "  rubric chart open_door.lost --format svg --out open_door.svg\n"
     "  rubric chart my_traces.rtr:mine --target ./my_adapter\n"
+    "  rubric chart --protocol my_protocol poll.lost --target 'python3 my_protocol/node.py'\n"
     "Exit codes: 0 drawn, 1 drawn, but the trace was not kept, 2 the trace cannot be\n"
     "run, 64 usage, 66 the file cannot be read, 74 output cannot be written.";
 
@@ -44,6 +47,7 @@ struct ChartOptions {
   std::string target;
   std::string out = "-";
   std::size_t width = 0;
+  std::string folder;  // Of another protocol.
 };
 
 [[noreturn]] void input_error(const std::string& what) {
@@ -51,8 +55,10 @@ struct ChartOptions {
   cli::exit_with(cli::kExitInput);
 }
 
-// Returns the cases that the user means; they point into `cases`.
-std::vector<const suite::SuiteCase*> chosen(const std::string& what, suite::Cases& cases) {
+// Returns the cases that the user means; they point into `cases`. `traces`: of another protocol.
+std::vector<const suite::SuiteCase*> chosen(const std::string& what,
+                                            const std::vector<std::string>& traces,
+                                            suite::Cases& cases) {
   constexpr std::string_view kEnding = ".rtr";
   const std::size_t colon = what.rfind(".rtr:");
   const bool named = colon != what.npos;
@@ -61,7 +67,9 @@ std::vector<const suite::SuiteCase*> chosen(const std::string& what, suite::Case
   const bool is_file = named || what.ends_with(kEnding) || what.find('/') != what.npos ||
                        std::filesystem::exists(what);
   try {
-    cases = is_file ? suite::Cases::of({path}) : suite::Cases::own();
+    cases = is_file          ? suite::Cases::of({path})
+            : traces.empty() ? suite::Cases::own()
+                             : suite::Cases::of(traces);
   } catch (const std::runtime_error& error) {
     input_error(error.what());
   }
@@ -125,8 +133,13 @@ void run_chart(const ChartOptions& options) {
   const std::size_t suffix = options.what.rfind(".rtr");  // FILE.rtr:CASE
   const std::size_t end = suffix == std::string::npos ? suffix : suffix + 4;
   cli::keep_apart("--out", options.out, {options.what.substr(0, end)});
+  std::vector<std::string> traces;
+  use_protocol("chart", options.folder, {}, traces);
+  if (!trace::protocol().has_machine && options.target.empty()) {
+    throw cli::UsageError("--protocol", "the reference machine plays RUBICON alone; give --target");
+  }
   suite::Cases cases;
-  const std::vector<const suite::SuiteCase*> all = chosen(options.what, cases);
+  const std::vector<const suite::SuiteCase*> all = chosen(options.what, traces, cases);
   const bool picture = options.format == "svg";
   if (picture && all.size() > 1) {
     throw cli::UsageError(fmt::format("{} has {} cases; name the one to draw: {}:{}", options.what,
@@ -164,6 +177,7 @@ void add_chart(cli::Command& app) {
   sub.add_option("CASE", options->what, "A case's name, FILE.rtr or FILE.rtr:CASE")
       .required()
       .check(cli::given);
+  add_protocol_option(sub, options->folder);
   sub.add_option("--format", options->format, "Draw as text or svg")
       .one_of({"text", "svg"})
       .show_default();

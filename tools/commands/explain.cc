@@ -5,6 +5,8 @@
 #include <cctype>
 #include <cstdio>
 #include <memory>
+#include <span>
+#include <stdexcept>
 
 #include "codec/containers/hex_reader.h"
 #include "codec/generated/tinyos/tables.h"
@@ -12,6 +14,8 @@
 #include "codec/reflect/registry.h"
 #include "codec/reflect/suggest.h"
 #include "codec/text/text.h"
+#include "conformance/test/suite/cases.h"
+#include "conformance/trace/protocol.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/input.h"
 #include "tools/cli/output.h"
@@ -20,6 +24,7 @@
 #include "tools/commands/explain/explain_frame.h"
 #include "tools/commands/explain/explain_rule.h"
 #include "tools/commands/explain/type_text.h"
+#include "tools/commands/protocol_folder.h"
 
 namespace rubric::tools {
 namespace {
@@ -31,12 +36,16 @@ struct ExplainOptions {
   std::vector<std::string> words;
   std::string framing = "auto";
   bool all_cases = false;
+  std::string folder;  // Of another protocol.
 };
 
 constexpr const char* kExplainFooter =
     "X is a message, a rule (WIRE-NET-NBYTES) or a group of them (J4), an enum or a mask, or the\n"
     "hex bytes of a frame: a serial packet as Listen prints it, a serial frame with its kind\n"
     "byte, an 802.15.4 frame.\n"
+    "Examples:\n"
+    "  rubric explain J4-SEQ\n"
+    "  rubric explain --protocol my_protocol POLL-ONCE\n"
     "Exit codes: 0 explained, 1 the frame is malformed, 64 usage or nothing of that\n"
     "name.";
 
@@ -45,14 +54,43 @@ std::vector<const Protocol*> layers(const Protocol& protocol) {
   return {&protocol, &tinyos::tables::kProtocol};
 }
 
+// Returns where the cases of a protocol's folder name rules; they point into `cases`.
+std::vector<cases::CaseUse> uses_in(const suite::Cases& cases) {
+  std::vector<cases::CaseUse> out;
+  for (const suite::SuiteCase& one : cases.all()) {
+    for (const trace::Line* line : one.one->lines()) {
+      const bool negative = line->op == trace::Op::kMustNot;
+      for (const std::string& rule : line->requirements) {
+        const cases::CaseUse use{one.one->name.c_str(), one.file->file_name.c_str(),
+                                 trace::requirement_id(rule), negative};
+        const bool known = std::ranges::any_of(out, [&](const cases::CaseUse& other) {
+          return other.name == use.name && other.requirement == use.requirement &&
+                 other.negative == negative;
+        });
+        if (!known) out.push_back(use);
+      }
+    }
+  }
+  return out;
+}
+
+// Where rules are tried, and where the project keeps them.
+struct RuleUses {
+  std::span<const cases::CaseUse> uses = cases::kCaseUses;
+  std::span<const explain::RulePlace> places = explain::rule_places();
+};
+
 // Returns an empty text if nothing has this name.
-std::string explain_name(const Protocol& protocol, const std::string& name, bool all_cases) {
+std::string explain_name(const Protocol& protocol, const std::string& name, bool all_cases,
+                         const RuleUses& rules) {
   std::string out;
   const auto add = [&](std::string text) { out += (out.empty() ? "" : "\n") + std::move(text); };
   std::vector<const Protocol*> all = reflect::protocols();
   all.push_back(&tinyos::tables::kProtocol);
   const auto list = all_cases ? explain::CaseList::kWhole : explain::CaseList::kShort;
-  for (const ReqId rule : explain::rules_named(name)) add(explain::explain_rule(all, rule, list));
+  for (const ReqId rule : explain::rules_named(name)) {
+    add(explain::explain_rule(all, rule, list, rules.uses, rules.places));
+  }
   for (const Protocol* layer : layers(protocol)) {
     if (const reflect::Type* type = reflect::find_type(*layer, name)) {
       add(explain::explain_type(*layer, *type));
@@ -145,15 +183,30 @@ int explain_bytes(const ExplainOptions& options, const Protocol& protocol,
 }
 
 int run_explain(const ExplainOptions& options) {
-  const Protocol& protocol = cli::chosen_protocol(options.input);
+  std::vector<std::string> traces;
+  use_protocol("explain", options.folder, {}, traces);
+  const bool other = !options.folder.empty();
+  const Protocol& protocol = other ? *trace::protocol().wire : cli::chosen_protocol(options.input);
+  suite::Cases cases;
+  std::vector<cases::CaseUse> uses;
+  RuleUses rules;
+  if (other) {
+    try {
+      cases = suite::Cases::of(traces);
+    } catch (const std::runtime_error& error) {
+      cli::unreadable("explain", error.what());
+    }
+    uses = uses_in(cases);
+    rules = {uses, {}};
+  }
   const bool as_bytes = !options.input.as_message.empty() || options.framing != "auto";
   std::string text;
   int code = cli::kExitClean;
   std::vector<std::uint8_t> bytes;
-  if (!as_bytes) text = explain_name(protocol, options.words.front(), options.all_cases);
+  if (!as_bytes) text = explain_name(protocol, options.words.front(), options.all_cases, rules);
   if (!text.empty()) {
     for (std::size_t i = 1; i < options.words.size(); ++i) {
-      const std::string more = explain_name(protocol, options.words[i], options.all_cases);
+      const std::string more = explain_name(protocol, options.words[i], options.all_cases, rules);
       if (more.empty()) nothing_of(options.words[i], protocol);
       text += '\n' + more;
     }
@@ -177,6 +230,8 @@ void add_explain(cli::Command& app) {
   sub.footer(kExplainFooter);
   sub.add_option("X", options->words, "A name, or hex bytes in one word or several").required();
   cli::add_spec_option(sub, options->input);
+  add_protocol_option(sub, options->folder);
+  sub.get_option("--protocol").excludes(sub.get_option("--spec"));
   sub.add_option("--as", options->input.as_message, "Read the bytes as this message alone")
       .check(cli::given);
   sub.add_option("--framing", options->framing,

@@ -200,6 +200,19 @@ class Protocol(testing.Folder):
         self.assertEqual((code, err), (0, ""))
         self.assertIn("j4.wrong_seq", out)
 
+    def test_rules_and_cases_are_shown(self):
+        code, out, err = self.rubric("explain", "--protocol", CTP, "pull", "DATA-NEW-THL")
+        self.assertEqual((code, err), (0, ""))
+        self.assertIn("PULL-ASK: SHOULD, routing pull", out)
+        self.assertIn("positive: data.new_thl", out)
+        self.assertNotIn("machine:", out)
+        code, out, err = self.rubric("chart", "--protocol", CTP, "beacon.etx", "--target", CTP_NODE)
+        self.assertEqual((code, err), (0, ""))
+        self.assertIn("ctp_routing", out)
+        code, _, err = self.rubric("chart", "--protocol", CTP, "beacon.etx")
+        self.assertEqual(code, 64)
+        self.assertIn("give --target", err)
+
     def test_each_rule_of_ctp_has_a_case(self):
         code, out, _ = self.rubric("test", "--protocol", CTP, "--list", "--format", "json")
         self.assertEqual(code, 0)
