@@ -55,8 +55,7 @@ std::size_t Sites::count() const {
 }
 
 Packer::Packer(Nodes& nodes, Sites& sites, const Network& network)
-    : nodes_(nodes),
-      sites_(sites),
+    : sites_(sites),
       network_(network),
       count_(nodes.count()),
       site_bits_(std::min(

@@ -91,7 +91,6 @@ class Packer {
   SiteId find(std::size_t node, const Site& site);
   SiteId renamed(std::size_t g, std::size_t node, SiteId id);
 
-  Nodes& nodes_;
   Sites& sites_;
   const Network& network_;
   std::size_t count_;

@@ -20,6 +20,7 @@
 #include "tools/cli/input.h"
 #include "tools/cli/output.h"
 #include "tools/cli/specs.h"
+#include "tools/cli/verdict.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/explain/explain_frame.h"
 #include "tools/commands/explain/explain_rule.h"
