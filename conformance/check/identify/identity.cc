@@ -35,6 +35,7 @@ class Identifier {
     captured_ = !run_.marked || std::any_of(run_.seen.begin(), run_.seen.end(),
                                             [](const auto& seen) { return seen.node.empty(); });
     for (const LoggedNode& node : run_.nodes) add_logged(node);
+    out_.hears_radio = run_.tells_all();
     for (std::uint32_t i = 0; i < run_.seen.size(); ++i) look(i);
     resolve_streams();
     resolve_lines();

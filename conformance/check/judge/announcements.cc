@@ -80,7 +80,7 @@ void Announcements::announce(SinkWatch& sink, const Place& at, machine::Address 
                   "serial_joined of mote " + number(address.devid));
   }
   if (next_.empty()) {
-    refuse_report(sink, watch, at, address.devid, notice);
+    refuse_report(sink, watch, at, {address.devid, 0, descriptor}, notice);
     return;
   }
   if (!notice && watch.ack.frame != 0) {
@@ -111,7 +111,8 @@ void Announcements::announce(SinkWatch& sink, const Place& at, machine::Address 
 }
 
 void Announcements::refuse_report(SinkWatch& sink, PairWatch& watch, const Place& at,
-                                  std::uint16_t mote_am, bool notice) {
+                                  const Admission& announced, bool notice) {
+  const std::uint16_t mote_am = announced.devid;
   const SinkHypothesis& h = watch.set.back();
   Said said;
   for (auto it = watch.set.rbegin(); it != watch.set.rend(); ++it) {
@@ -144,6 +145,7 @@ void Announcements::refuse_report(SinkWatch& sink, PairWatch& watch, const Place
                                        : "another island as its destination.");
     said.expected = "That ack_join is ignored.";
   } else {
+    if (!has_ack) rule = "J6-ONLY"_rule;
     said.text = what + " of mote " + number(mote_am) + ", which has sent no ack_join to this sink.";
     said.expected = what + " only after an ack_join with the number of the request.";
   }
@@ -151,7 +153,13 @@ void Announcements::refuse_report(SinkWatch& sink, PairWatch& watch, const Place
   SinkHypothesis next = h;
   next.unknown = false;
   const std::uint16_t seq_num = next.pending ? next.pending->seq_num : watch.request_seq;
-  if (!next.member) next.member = Admission{mote_am, seq_num, {}};
+  if (!next.member) {
+    next.member = announced;
+    next.member->seq_num = seq_num;
+    const Device& device = context_.device(sink.device);  // The other of the two may follow.
+    next.owes_report = notice && device.shows_line();
+    next.owes_notice = !notice && device.application;
+  }
   next.pending.reset();  // It heard an ack_join that the capture does not have.
   watch.set.assign(1, next);
 }

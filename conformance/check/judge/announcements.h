@@ -37,8 +37,8 @@ class Announcements {
 
   void announce(SinkWatch& sink, const Place& at, machine::Address address,
                 const machine::Descriptor& descriptor, bool notice);
-  void refuse_report(SinkWatch& sink, PairWatch& watch, const Place& at, std::uint16_t mote_am,
-                     bool notice);
+  void refuse_report(SinkWatch& sink, PairWatch& watch, const Place& at,
+                     const machine::Admission& announced, bool notice);
   /// Reports each serial_joined that is overdue; `end`: no frame of the sink comes any more.
   void overdue_reports(SinkWatch& sink, std::int64_t end_us);
   void unannounced(const SinkWatch& sink, std::uint16_t mote_am, const PairWatch& watch,

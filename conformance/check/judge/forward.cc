@@ -12,8 +12,6 @@ using machine::Role;
 using machine::Route;
 
 constexpr std::int64_t kStartUs = 5'000'000;  // A buffer may hold older frames until then.
-constexpr std::int64_t kIslandSlackUs = 1'000'000;
-constexpr std::size_t kTwinsLook = 64;
 
 // On the serial line nbytes and the bytes after the payload may differ (N6-CONTENT).
 bool begins_with(const Net& serial, const Net& radio) {
@@ -22,90 +20,6 @@ bool begins_with(const Net& serial, const Net& radio) {
 }
 
 }  // namespace
-
-Forwarding::Forwarding(Context& context) : context_(context) {
-  for (std::size_t i = 0; i < context.who.devices.size(); ++i) {
-    const Device& device = context.who.devices[i];
-    if (device.role != Role::kSink || !device.known) continue;
-    Line& line = lines_.emplace_back();
-    line.sink = static_cast<std::uint16_t>(i);
-    line.am = device.am;
-    line.island = device.island;
-    line.serial = device.shows_line();
-    line.slack_us = device.whole ? context.response_us() : kIslandSlackUs;
-  }
-}
-
-bool Forwarding::Line::changing(std::int64_t time_us) const {
-  return std::abs(time_us - island_changed_us) < slack_us;
-}
-
-bool Forwarding::holds(const Ring<Passing, kRoom>& ring, const Net& net, bool waiting) {
-  for (std::size_t i = 0; i < ring.size(); ++i) {
-    const Passing& passing = ring.newest(i);
-    const bool wanted = !waiting || passing.passed < passing.copies;
-    if (wanted && same_message(passing.net, net)) return true;
-  }
-  return false;
-}
-
-Forwarding::Line* Forwarding::find(std::uint16_t sink) {
-  const auto found = std::ranges::find(lines_, sink, &Line::sink);
-  return found == lines_.end() ? nullptr : &*found;
-}
-
-void Forwarding::set_island(std::uint16_t sink, std::uint16_t island, std::int64_t now_us,
-                            bool sure) {
-  Line* const line = find(sink);
-  if (line == nullptr || line->island == island) return;
-  // It may pass on as the sink of either island what still waits.
-  forget_owed(line->up, line->owed_up);
-  forget_owed(line->down, line->owed_down);
-  line->island_changed_us = now_us;
-  line->island_sure = sure;
-  line->last_island = line->island;
-  line->island = island;
-}
-
-void Forwarding::begin_life(std::uint16_t sink) {
-  Line* const line = find(sink);
-  if (line == nullptr) return;
-  line->up.clear();
-  line->down.clear();
-  line->owed_up = line->owed_down = 0;
-  line->off = line->deaf = false;
-}
-
-void Forwarding::serial_set(std::uint16_t sink, bool on) {
-  Line* const line = find(sink);
-  if (line == nullptr) return;
-  line->off = !on;
-  if (!on) forget_owed(line->up, line->owed_up);
-}
-
-void Forwarding::forget_owed(Ring<Passing, kRoom>& ring, std::uint32_t& owed) {
-  for (std::size_t i = 0; i < ring.size(); ++i) ring.newest(i).owed = false;
-  owed = 0;
-}
-
-void Forwarding::radio_set(std::uint16_t sink, bool on) {
-  Line* const line = find(sink);
-  if (line == nullptr) return;
-  line->deaf = !on;
-  if (!on) forget_owed(line->down, line->owed_down);
-}
-
-void Forwarding::store(Ring<Passing, kRoom>& ring, const Passing& passing, std::uint32_t& owed) {
-  if (ring.full() && ring.oldest(0).owed) --owed;
-  Passing& stored = ring.push(passing);
-  if (passing.owed) ++owed;
-  for (std::size_t i = 1; i < std::min(ring.size(), kTwinsLook); ++i) {
-    Passing& other = ring.newest(i);
-    if (!same_message(other.net, stored.net)) continue;
-    other.twin = stored.twin = true;
-    return;
-  }
-}
 
 void Forwarding::heard_on_radio(const Observation& seen, std::uint16_t sender, const Net& net,
                                 std::uint16_t surely_received_by) {
@@ -151,20 +65,6 @@ void Forwarding::heard_on_radio(const Observation& seen, std::uint16_t sender, c
   }
 }
 
-void Forwarding::repeated(const Net& net, std::uint16_t sink) {
-  for (Line& line : lines_) {
-    if (sink != kNobody && line.sink != sink) continue;
-    Ring<Passing, kRoom>& ring = sink == kNobody ? line.up : line.down;
-    for (std::size_t i = 0; i < std::min(ring.size(), kTwinsLook); ++i) {
-      Passing& passing = ring.newest(i);
-      if (!same_message(passing.net, net)) continue;
-      if (passing.copies < 255) ++passing.copies;
-      passing.twin = true;
-      break;
-    }
-  }
-}
-
 void Forwarding::heard_on_serial(std::uint16_t sink, std::uint16_t base, const Observation& seen,
                                  const Net& net, bool surely_received) {
   Line* const line = find(sink);
@@ -199,22 +99,6 @@ void Forwarding::heard_on_serial(std::uint16_t sink, std::uint16_t base, const O
                        number(line->island) + ".",
                    "Another island's messages go through PEIS.",
                    {}});
-}
-
-void Forwarding::surely_down(std::uint16_t sink, const Net& net, std::int64_t now_us) {
-  Line* const line = find(sink);
-  if (line == nullptr) return;
-  for (std::size_t i = 0; i < line->down.size(); ++i) {
-    Passing& passing = line->down.newest(i);
-    if (!same_message(passing.net, net)) continue;
-    passing.sure = true;
-    passing.whole_us = std::max(passing.whole_us, now_us);
-    if (passing.owes && !passing.owed && passing.passed == 0) {
-      passing.owed = true;
-      ++line->owed_down;
-    }
-    return;
-  }
 }
 
 void Forwarding::judge_order(Line& line, const Passing& passing, const Observation& seen) {
@@ -412,17 +296,7 @@ bool Forwarding::sent_on_radio(std::uint16_t sink, const Observation& seen, cons
     pass_down(*line, passing, seen, net);
     return true;
   }
-  // Sending on by radio what it heard for another mote of its island is legal, once (decision 115).
-  for (std::size_t i = 0; i < line->up.size(); ++i) {
-    Passing& passing = line->up.newest(i);
-    if (passing.passed >= passing.copies || !same_message(passing.net, net) ||
-        !same_payload(passing.net, net)) {
-      continue;
-    }
-    ++passing.passed;
-    return true;
-  }
-  if (may_be_anothers(*line, net)) return true;
+  if (may_be_anothers(*line, net) || relayed(*line, seen, net)) return true;
   if (near != nullptr) {
     refuse_down(*line, seen, net);
     return true;
@@ -442,6 +316,40 @@ bool Forwarding::sent_on_radio(std::uint16_t sink, const Observation& seen, cons
                   {"The sink radiates " + name_of(net) + "; nobody sent it this.",
                    "Its own messages, and those that came to it.",
                    {}});
+  return true;
+}
+
+// Judges what the sink sends on by radio that it heard there. Returns whether it is such a message.
+bool Forwarding::relayed(Line& line, const Observation& seen, const Net& net) {
+  const bool mote = net.dest.pid == line.island && net.dest.devid != line.am &&
+                    !machine::is_reserved(net.dest.devid);
+  Passing* heard = nullptr;
+  for (std::size_t i = 0; i < line.up.size(); ++i) {
+    Passing& passing = line.up.newest(i);
+    if (!same_message(passing.net, net) || !same_payload(passing.net, net)) continue;
+    heard = &passing;
+    if (passing.relayed < passing.copies) break;
+  }
+  if (heard == nullptr) return false;
+  // For another mote of its island it may, once, to that mote (decision 115).
+  const bool again = heard->relayed >= heard->copies;
+  const bool forbidden = heard->forbidden != ReqId::kNone && (!mote || !net.sound);
+  const bool right = mote && !again && !forbidden && seen.frame.dest == net.dest.devid;
+  if (heard->relayed < 255) ++heard->relayed;
+  if (right) return true;
+  const Severity severity = forbidden && heard->weak ? Severity::kWeak : Severity::kFail;
+  context_.report(
+      forbidden        ? heard->forbidden
+      : mote && !again ? "N4-MOTE"_rule
+                       : "N6-ONCE"_rule,
+      context_.on_line(line.sink,
+                       line.changing(seen.place.time_us) ? Severity::kInconclusive : severity),
+      seen.place, line.sink,
+      {"The sink sends on by radio " + name_of(net) +
+           (again ? " again." : ", which came by radio."),
+       mote ? "Nothing, or once to AM address " + number(net.dest.devid) + "."
+            : "Nothing by radio.",
+       {}});
   return true;
 }
 
@@ -492,20 +400,6 @@ bool Forwarding::crowded(const Line& line, const Passing& passing, Link out) con
   const std::int64_t from_us = passing.place.time_us;
   return context_.busy(line.sink, from_us, passing.whole_us + context_.response_us(), out) ||
          context_.crowded(line.sink, from_us);
-}
-
-void Forwarding::somebody_sent(const Net& net) {
-  for (Line& line : lines_) {
-    if (context_.device(line.sink).whole) continue;  // Its log would have it.
-    for (std::size_t i = 0; i < line.down.size(); ++i) {
-      Passing& passing = line.down.newest(i);
-      if (!same_message(passing.net, net)) continue;
-      if (passing.owed) --line.owed_down;
-      passing.owed = false;
-      if (passing.copies < 255) ++passing.copies;  // It may have been another's.
-      break;
-    }
-  }
 }
 
 void Forwarding::refuse_down(Line& line, const Observation& seen, const Net& net) {

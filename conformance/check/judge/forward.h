@@ -27,6 +27,7 @@ struct Passing {
   bool twin = false;               ///< Another one of the same content is around.
   std::uint8_t copies = 1;         ///< Times that it may have been received.
   std::uint8_t passed = 0;
+  std::uint8_t relayed = 0;  ///< Sent on by radio, where it came from.
 };
 
 class Forwarding {
@@ -73,6 +74,7 @@ class Forwarding {
  private:
   static constexpr std::size_t kRoom = 256;
   static constexpr std::size_t kEarlyRoom = 16;
+  static constexpr std::size_t kTwinsLook = 64;
 
   struct Line {
     std::uint16_t sink = kNobody;
@@ -117,6 +119,7 @@ class Forwarding {
   void overdue_down(Line& line, std::int64_t now_us);
   bool crowded(const Line& line, const Passing& passing, machine::Link out) const;
   bool may_be_anothers(const Line& line, const Net& net);
+  bool relayed(Line& line, const Observation& seen, const Net& net);
   void unheard(Line& line, const Passing& passing);
   void judge_order(Line& line, const Passing& passing, const Observation& seen);
 

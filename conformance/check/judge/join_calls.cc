@@ -10,7 +10,10 @@ using Phase = JoinMote::Phase;
 
 JoinCalls::JoinCalls(Context& context, MoteJoins& motes, std::size_t devices)
     : context_(context), motes_(motes), calls_(devices) {
-  // Only a log that has join calls can show that there was none.
+  // Only a log that has join calls, or is whole, can show that there was none.
+  for (std::size_t i = 0; i < devices; ++i) {
+    calls_[i].logged = context.device(static_cast<std::uint16_t>(i)).whole;
+  }
   for (std::size_t i = 0; i < context.run.seen.size(); ++i) {
     const Observation& seen = context.run.seen[i];
     const std::uint16_t node = context.who.marks[i].device;
@@ -143,8 +146,9 @@ void JoinCalls::told(std::uint16_t mote, const Observation& seen, const machine:
   }
   said.text = "joined(FAIL) " + ms_text(now - before.back().first_request_us) +
               " after the first join_request.";
-  said.expected = "Not before the fourth expiry of the timer, " +
-                  ms_text(MoteJoins::kExpiriesMin * context_.join_period_us()) + ".";
+  const std::uint8_t expiries = motes_.expiries_min();
+  said.expected = "Not before expiry " + number(expiries) + " of the timer, " +
+                  ms_text(expiries * context_.join_period_us()) + ".";
   context_.report("J8-FAIL"_rule, Severity::kFail, seen.place, mote, std::move(said));
 }
 

@@ -9,7 +9,6 @@ namespace {
 
 using Phase = machine::JoinMote::Phase;
 
-constexpr std::uint8_t kRequestsMin = 4;    // In a call that fails (decision 101).
 constexpr std::size_t kJoinCrowd = 6;       // Frames; then a buffer may have been full.
 constexpr std::int64_t kClockOffMs = 1000;  // (decision 119)
 
@@ -126,7 +125,7 @@ bool JoinWatch::still_owed(std::uint16_t node, const Debt& debt) {
   const Observation& cause = context_.run.seen[debt.index];
   const std::int64_t from = cause.place.time_us;
   const std::uint8_t requests_min =
-      context_.run.all_stated ? context_.profile().join_requests_max : kRequestsMin;
+      context_.run.all_stated ? context_.profile().join_requests_max : motes_.expiries_min();
   if (debt.owes != Owes::kReply) {
     const auto owes = [&](const MoteHypothesis& h) {
       if (h.unknown) return false;

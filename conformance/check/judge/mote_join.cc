@@ -41,8 +41,12 @@ void MoteJoins::begin_life(std::uint16_t mote) {
   motes_[mote].set.push_back(MoteHypothesis{});
 }
 
+std::uint8_t MoteJoins::expiries_min() const {
+  return std::min<std::uint8_t>(4, context_.profile().join_requests_max);
+}
+
 bool MoteJoins::may_have_failed(const MoteHypothesis& h, std::int64_t now_us) const {
-  const std::int64_t expiries = kExpiriesMin * context_.join_period_us();
+  const std::int64_t expiries = expiries_min() * context_.join_period_us();
   return now_us - h.first_request_us >= expiries - context_.early_us();
 }
 
@@ -61,7 +65,7 @@ bool MoteJoins::next_request(const MoteHypothesis& h, std::uint16_t id, std::int
   context_.actions.clear();
   if (h.unknown || h.join.phase == Phase::kOutside) return fresh_call();
   // A mote that accepted, but had no link ack, may let its timer run on (decision 102).
-  if (h.join.phase == Phase::kMember && (h.sent || h.confirmed)) return false;
+  if (h.join.phase == Phase::kMember && (h.sent || h.confirmed || h.told)) return false;
   const std::int64_t least_us = context_.join_period_us() - context_.early_us();
   const bool in_time = now_us - h.last_request_us >= least_us;
   bool any = false;
@@ -127,8 +131,9 @@ void MoteJoins::refuse_request(std::uint16_t mote, const Observation& seen,
   const bool same = request.seq_num == h.join.seq_num;
   Said said;
   ReqId rule = "J8-PERIOD"_rule;
-  // Another number could be the call after a reboot that nobody saw.
-  Severity severity = same ? Severity::kFail : Severity::kInconclusive;
+  // Another number could be the call after a reboot that nobody saw; a whole log has reboots.
+  const bool sure = same || context_.device(mote).whole;
+  Severity severity = sure ? Severity::kFail : Severity::kInconclusive;
   const std::int64_t period = context_.join_period_us();
   if (h.join.phase == Phase::kMember) {
     rule = "J5-STOP"_rule;
@@ -181,6 +186,11 @@ void MoteJoins::reply(std::uint16_t mote, const Observation& seen, std::uint32_t
       next_.push_back(h);  // It may have asked before the capture began, or not.
       continue;
     }
+    // As long as an answer may take it may choose among offers.
+    const bool chooses = h.join.phase == Phase::kMember && h.acks_seen == 0 && !h.told && !h.sent &&
+                         h.join.address.pid != reply.island &&
+                         now - h.accepted_us <= context_.response_us();
+    if (chooses) heard.join.phase = Phase::kJoining;
     const JoinSend send =
         machine::hear_reply(heard.join, context_.join_context(device.am, 0, now), offered,
                             reply.seq_num, seen.frame.src, context_.actions);
@@ -190,10 +200,10 @@ void MoteJoins::reply(std::uint16_t mote, const Observation& seen, std::uint32_t
       continue;
     }
     asked_for = true;
-    heard.accepted_us = now;
+    if (!chooses) heard.accepted_us = now;
     heard.reply = index;
     heard.acks_seen = 0;
-    if (!surely_received) next_.push_back(h);
+    if (!surely_received || chooses) next_.push_back(h);
     next_.push_back(heard);
   }
   if (!asked_for) {

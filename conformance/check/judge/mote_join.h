@@ -24,7 +24,7 @@
 //   all. The set then goes on from what was seen, or from `unknown`.
 //
 // Tolerance: requests may come early_us() before the join period is over (decision 128), and as
-// late as they like. FAIL is right from kExpiriesMin periods on, less early_us(). An ack_join may
+// late as they like. FAIL is right from expiries_min() periods on, less early_us(). An ack_join may
 // be repeated, kAckJoinsMax times, for a join period after the last request or after the acceptance
 // and the response time; more than kFewAcks repeats are weak. Without stamps a request is always in
 // time. Hypotheses that differ only in age are merged into the younger one, which allows more.
@@ -80,8 +80,6 @@ struct MoteWatch {
 
 class MoteJoins {
  public:
-  static constexpr std::uint8_t kExpiriesMin = 4;  ///< Before a FAIL (decision 101).
-
   MoteJoins(Context& context, std::size_t devices);
 
   void begin_life(std::uint16_t mote);
@@ -95,7 +93,9 @@ class MoteJoins {
   std::vector<MoteHypothesis>& set(std::uint16_t mote) { return motes_[mote].set; }
   /// Returns whether the mote was offered what its request had not asked for.
   bool stray_offer(std::uint16_t mote) const { return motes_[mote].wrong_reply.has_value(); }
-  /// Returns whether a call that made its first request then may have failed by now (decision 101).
+  /// Returns at which expiry of its timer a call may fail first (decision 101).
+  std::uint8_t expiries_min() const;
+  /// Returns whether a call that made its first request then may have failed by now.
   bool may_have_failed(const MoteHypothesis& h, std::int64_t now_us) const;
   /// Returns the hypotheses for a finding, the furthest first, each with what it misses.
   std::vector<Hypothesis> explanations(const std::vector<MoteHypothesis>& set,

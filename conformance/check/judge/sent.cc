@@ -13,7 +13,6 @@ using machine::Route;
 using rubicon::Component;
 
 constexpr std::int64_t kAtOnceUs = 50'000;
-constexpr std::int64_t kTimeouts = 2;  // After so many of the stated ones there is no event.
 constexpr std::size_t kBufferOut = 4;  // Messages; release 1.0's radio.
 constexpr std::size_t kFloatBytes = rubicon::SynapticDataLayout::ValuesAt::kUnitBytes;
 
@@ -81,6 +80,12 @@ void Originals::ends(std::uint16_t node, std::int64_t end_us, const InterfaceWat
   auto& calls = calls_[node];
   for (std::size_t i = 0; i < calls.size(); ++i) {
     const Call& one = calls.oldest(i);
+    if (!one.result && device.whole && end_us > context_.due_us(node, one.place.time_us)) {
+      context_.report("N1-SEQ"_rule, Severity::kFail, one.place, node,
+                      {"The call of send to " + text_of(one.send->dest) + " got no result.",
+                       "The number of the message, or 0xFFFF.",
+                       {}});
+    }
     if (one.free || one.left || !one.result || one.result == machine::kNoSeq) continue;
     const std::int64_t on_us = interfaces.on_since(node, one.line);
     const std::int64_t since = std::max(one.place.time_us, on_us);
@@ -107,7 +112,11 @@ void Originals::told(std::uint16_t node, const Observation& seen,
 // buffer holds. Forwarded ones may have filled it, and awaited acks the room for acks, which nobody
 // states.
 void Originals::judge_refused(std::uint16_t node, const Observation& seen, const Call& call) {
-  if (!context_.run.all_stated || call.free) return;
+  // These it must or may refuse (decision 114).
+  const machine::Send& send = *call.send;
+  const bool all = send.dest.devid == machine::kBroadcastDevid;
+  const bool refusable = send.data.size() > machine::kAppDataMax || (send.reliable && all);
+  if (!context_.run.all_stated || call.free || refusable) return;
   std::size_t waiting = 0;
   for (std::size_t i = 0; i < calls_[node].size(); ++i) {
     const Call& one = calls_[node].newest(i);
@@ -147,6 +156,25 @@ void Originals::judge_order(std::uint16_t node, const Observation& seen, const C
                      {}});
     return;
   }
+}
+
+// Says that by a whole log a message left later than an answer may, with nothing else to wait for.
+void Originals::judge_late(std::uint16_t node, const Observation& seen, const Call& call,
+                           Link link) {
+  const std::int64_t called_us = call.place.time_us;
+  if (!context_.device(node).whole || call.free || call.result != call.left) return;
+  if (seen.place.time_us <= context_.due_us(node, called_us, link)) return;
+  // It may have waited behind another one.
+  const bool behind =
+      sent_[node].size() > 0 &&
+      seen.place.time_us - sent_[node].newest(0).place.time_us <= context_.response_us();
+  const bool waits = behind || context_.crowded(node, called_us);
+  context_.report("N2-ONCE"_rule, waits ? Severity::kInconclusive : Severity::kFail, seen.place,
+                  node,
+                  {"The message that send accepted leaves " +
+                       ms_text(seen.place.time_us - called_us) + " after the call.",
+                   "Within " + ms_text(context_.response_us()) + ".",
+                   {}});
 }
 
 // Judges the number of a message that left and the one that send returned for it.
@@ -198,7 +226,19 @@ void Originals::judge_wrap(std::uint16_t node, const Observation& seen, const Ne
     if (one.result == net.seq_num) break;
   }
   if (same != nullptr) {
+    const bool left = same->left == net.seq_num && same->result == net.seq_num;
+    if (left && context_.device(node).whole) {
+      context_.report(
+          net.reliable == 1 ? "T3-RESEND"_rule : "N2-ONCE"_rule, Severity::kFail, seen.place, node,
+          {name_of(net) + " is sent again, " + ms_text(seen.place.time_us - same->left_us) +
+               " after the first time, and no call of its application asked for that.",
+           "Each message once; resending is the application's decision.",
+           {}});
+      return;
+    }
+    same->left_us = seen.place.time_us;
     same->left = net.seq_num;
+    judge_late(node, seen, *same, link);
     const std::int64_t called_us = same->place.time_us;
     if (same->result == net.seq_num) {
       judge_order(node, seen, *same);
@@ -311,6 +351,14 @@ void Originals::judge_address(std::uint16_t node, const Observation& seen, const
                      {}});
     return;
   }
+  if (device.role == Role::kSink && link == Link::kSerial &&
+      route.onward == Route::Onward::kRadio) {
+    context_.report(route.requirement, context_.on_line(node, Severity::kFail), seen.place, node,
+                    {"The sink sends " + name_of(net) + " up its serial line.",
+                     "By radio to AM address " + number(route.am_dest) + ".",
+                     {}});
+    return;
+  }
   if (link != Link::kRadio || route.onward != Route::Onward::kRadio) return;
   if (seen.frame.dest == route.am_dest) {
     context_.findings.kept(route.requirement);
@@ -396,27 +444,6 @@ void Originals::judge_synaptic(std::uint16_t node, const Observation& seen, cons
   }
 }
 
-void Originals::ack_heard(std::uint16_t node, const Net& ack, std::uint16_t acked) {
-  Ring<Sent, kRoom>& ring = sent_[node];
-  for (std::size_t i = 0; i < ring.size(); ++i) {
-    Sent& sent = ring.newest(i);
-    if (sent.net.seq_num == acked && sent.net.reliable == 1) sent.acked = true;
-  }
-  if (context_.device(node).application) acks_[node].push({ack, acked});
-}
-
-void Originals::ack_given(std::uint16_t node, const Net& ack, std::int64_t now_us) {
-  const std::int32_t acked = machine::acked_seq_num(ack.body());
-  Ring<Sent, kRoom>& ring = sent_[node];
-  for (std::size_t i = 0; i < ring.size(); ++i) {
-    Sent& sent = ring.newest(i);
-    const bool matches = sent.net.seq_num == acked && sent.net.reliable == 1 &&
-                         sent.net.src == ack.dest && sent.net.dest == ack.src &&
-                         sent.net.app_id == ack.app_id;
-    if (matches && sent.given_us < 0) sent.given_us = now_us;
-  }
-}
-
 void Originals::close(std::uint16_t node, std::size_t newest, std::int64_t now_us) {
   Ring<Sent, kRoom>& ring = sent_[node];
   const Sent& sent = ring.newest(newest);
@@ -455,107 +482,6 @@ void Originals::finish(std::int64_t end_us, const InterfaceWatch& interfaces) {
     }
     note_stale(context_, static_cast<std::uint16_t>(node), "WIRE-NET-PAYLOAD"_rule, stale_[node],
                "On the air a message has ");
-  }
-}
-
-// Returns whether an ack that fits the message in everything was heard.
-bool Originals::rightly_acked(std::uint16_t node, const Net& message) {
-  Ring<Ack, kRoom>& ring = acks_[node];
-  for (std::size_t i = 0; i < ring.size(); ++i) {
-    const Ack& ack = ring.newest(i);
-    if (ack.number == message.seq_num && ack.net.src == message.dest &&
-        ack.net.app_id == message.app_id) {
-      return true;
-    }
-  }
-  return ring.size() == 0;
-}
-
-void Originals::told(std::uint16_t node, const Observation& seen, const machine::AckReceived& ack) {
-  const std::int64_t now = seen.place.time_us;
-  Ring<Sent, kRoom>& ring = sent_[node];
-  Sent* match = nullptr;
-  for (std::size_t i = 0; i < ring.size() && match == nullptr; ++i) {
-    Sent& sent = ring.newest(i);
-    if (sent.net.seq_num == ack.seq_num && sent.net.reliable == 1) match = &sent;
-  }
-  const std::string what = "receive_ack(" + std::string(ack.success ? "success" : "failure") +
-                           ", number " + number(ack.seq_num) + ")";
-  if (match == nullptr) {
-    // Messages from a base station to other islands pass where no log and no tap is read, and of
-    // many sent at once the first are forgotten here before their timeout.
-    const Device& device = context_.device(node);
-    const bool elsewhere = device.role == Role::kBaseStation && !logs_peis(context_.run, node);
-    const std::int64_t patience_us = kTimeouts * context_.ack_timeout_us() + context_.response_us();
-    const bool forgotten =
-        ring.full() && now - ring.newest(ring.size() - 1).place.time_us <= patience_us;
-    context_.report(ack.success ? "T3-SUCCESS"_rule : "T3-MATCH"_rule,
-                    elsewhere || forgotten ? Severity::kInconclusive
-                                           : context_.without(node, device.first_us, now),
-                    seen.place, node,
-                    {what + " although the node has sent no reliable message with that number.",
-                     "The number of the message that was acked.",
-                     {}});
-    return;
-  }
-  if (match->told++ > 0) {
-    context_.report("T3-ONCE"_rule, Severity::kFail, seen.place, node,
-                    {what + " again.", "One receive_ack for each message.", {}});
-    return;
-  }
-  if (match->net.sound && ack.app_id != match->net.app_id) {
-    context_.report("T3-SUCCESS"_rule, Severity::kFail, seen.place, node,
-                    {what + " for APPID " + number(ack.app_id) + "; the message had " +
-                         number(match->net.app_id) + ".",
-                     "receive_ack to the application that sent it.",
-                     {}});
-    return;
-  }
-  // An implementation may start its timer at either.
-  const std::int64_t waited = now - match->called_us;
-  const std::int64_t latest = context_.due_us(
-      node, match->place.time_us + context_.ack_timeout_us() + context_.response_us());
-  const std::int64_t since_ack = match->given_us < 0 ? 0 : now - match->given_us;
-  const bool overdue = match->given_us >= 0 && now > context_.due_us(node, match->given_us);
-  const bool too_late = seen.place.timed() && match->place.timed() && now > latest;
-  if (ack.success ? overdue : since_ack > context_.response_us()) {
-    context_.report("T3-SUCCESS"_rule, Severity::kFail, seen.place, node,
-                    {what + ", " + ms_text(now - match->given_us) + " after its ack had come.",
-                     "receive_ack(success) when the ack came.",
-                     {}});
-  } else if (ack.success && match->acked && !rightly_acked(node, match->net)) {
-    const std::uint16_t acker = context_.mote_of_am[match->net.dest.devid];
-    const bool mote =
-        context_.without(acker, match->place.time_us, now) == Severity::kFail && acker != kNobody;
-    const bool sure = context_.device(node).hearing || mote || context_.options.sniffer_complete;
-    context_.report("T3-SENDER"_rule, sure ? Severity::kWeak : Severity::kInconclusive, seen.place,
-                    node,
-                    {what + ", but every ack with that number came from another node than " +
-                         text_of(match->net.dest) + " or for another APPID than " +
-                         number(match->net.app_id) + ".",
-                     "An ack counts from the message's destination, with its APPID.",
-                     {}});
-  } else if (ack.success && !match->acked) {
-    context_.report("T3-SUCCESS"_rule, context_.without(kNobody, match->place.time_us, now),
-                    seen.place, node,
-                    {what + ", but no ack of it was heard.", "No receive_ack before the ack.", {}});
-  } else if (!ack.success && seen.place.timed() && match->place.timed() &&
-             waited < context_.ack_timeout_us() - context_.early_us()) {
-    // Only a stated timeout can be broken (decision 110).
-    const bool stated = context_.ack_timeout_stated();
-    context_.report("T3-TIMEOUT"_rule, stated ? Severity::kFail : Severity::kInconclusive,
-                    seen.place, node,
-                    {what + " " + ms_text(waited) + " after the message.",
-                     "Not before the timeout, " + ms_text(context_.ack_timeout_us()) + ".",
-                     {}});
-  } else if (too_late && context_.ack_timeout_stated()) {
-    context_.report(
-        "T3-TIMEOUT"_rule, Severity::kFail, seen.place, node,
-        {what + " " + ms_text(waited) + " after the message.",
-         "receive_ack(failure) at the timeout, " + ms_text(context_.ack_timeout_us()) + ".",
-         {}});
-  } else {
-    context_.findings.kept(ack.success ? "T3-SUCCESS"_rule : "T3-TIMEOUT"_rule);
   }
 }
 

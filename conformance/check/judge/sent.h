@@ -61,6 +61,7 @@ class Originals {
 
  private:
   static constexpr std::size_t kRoom = 32;
+  static constexpr std::int64_t kTimeouts = 2;  ///< After so many stated ones there is no event.
 
   struct Call {
     const machine::Send* send = nullptr;
@@ -69,6 +70,7 @@ class Originals {
     Place place;
     bool free = false;                           ///< It need not leave, or that is not seen.
     machine::Link line = machine::Link::kRadio;  ///< By which it leaves.
+    std::int64_t left_us = -1;                   ///< When it left.
   };
 
   /// Judges the end of a message that is forgotten now: was its application notified?
@@ -77,6 +79,8 @@ class Originals {
                      machine::Link link, machine::Address own);
   void judge_synaptic(std::uint16_t node, const Observation& seen, const Net& net);
   void judge_result(std::uint16_t node, const Observation& seen, const Call& call);
+  void judge_late(std::uint16_t node, const Observation& seen, const Call& call,
+                  machine::Link link);
   void judge_refused(std::uint16_t node, const Observation& seen, const Call& call);
   void judge_order(std::uint16_t node, const Observation& seen, const Call& later);
   void judge_wrap(std::uint16_t node, const Observation& seen, const Net& net, machine::Link link);

@@ -64,6 +64,11 @@ void SinkJoins::begin_life(std::uint16_t sink) {
   watch->debts = 0;
   watch->serial_off = false;
   watch->reported_us = -1;
+  const Device& device = context_.device(sink);
+  if (!device.hearing) return;  // A capture does not show with which island it begins.
+  watch->island = device.island;
+  watch->former_island = 0;
+  watch->island_set = false;
 }
 
 void SinkJoins::set_island(std::uint16_t sink, std::uint16_t island, const Place& at, bool sure) {
@@ -252,6 +257,12 @@ void SinkJoins::reply(std::uint16_t sink_device, const Observation& seen, const 
       next.unknown = false;
       next.pending = Admission{am, reply.seq_num, {}};
       next.owes_older = watch.asked && reply.seq_num != watch.request_seq;
+      next_.push_back(next);
+      if (!next.owes_older) continue;
+      // Or it answers an older request late, and has the last one in mind.
+      next.pending->seq_num = watch.request_seq;
+      next.owed = 1;
+      next.owed_seq[0] = watch.request_seq;
       next_.push_back(next);
       continue;
     }

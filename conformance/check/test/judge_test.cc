@@ -136,7 +136,7 @@ const Fault kFaults[] = {
        s.request(400, 4, 300).reply(410, 11, 4, 300, 410).ack_join(420, 11, 4, 300).link_ack();
      }},
     {"two_reports", "J6-REPEAT", [](Script& s) { s.joined(440, 11, 2); }},
-    {"report_without_ack", "J6-ADD",
+    {"report_without_ack", "J6-ONLY",
      [](Script& s) { s.request(400, 4, 300).reply(410, 11, 4, 300, 410).joined(440, 11, 4); }},
     {"report_of_a_wrong_ack", "J4-CONTENT J6-SEQ",
      [](Script& s) {

@@ -50,7 +50,7 @@ std::string fails(const std::string& log) { return found(kBegin + log, Severity:
 // while.
 std::string found_by_end(const std::string& log) {
   std::string all = found(kBegin + log + kEnd, Severity::kInconclusive);
-  const std::string end = "J6-ADD";
+  const std::string end = "J6-ONLY";
   EXPECT_EQ(all.substr(all.size() - std::min(all.size(), end.size())), end);
   all.resize(all.size() - std::min(all.size(), end.size()));
   if (!all.empty()) all.pop_back();

@@ -253,7 +253,8 @@ class Unit:
                 continue
             first, second = self.text(a), self.text(b)
             same = all(a.get(key) == b.get(key) for key in ("type", "valueCategory"))
-            if same and first != second and not {"{", ""} & {first[:1], second[:1]}:
+            # What a list leaves out has the place of its last brace.
+            if same and first != second and not {"{", "}", ""} & {first[:1], second[:1]}:
                 self.add_edits(node, function, [self.edit(a, second), self.edit(b, first)])
 
     def mutate_CallExpr(self, node, parent, inner, function):

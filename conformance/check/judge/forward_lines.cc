@@ -1,0 +1,144 @@
+// What a sink has heard and owes on each of its lines; forward.cc judges what it sends.
+#include <algorithm>
+
+#include "conformance/check/judge/forward.h"
+
+namespace rubric::check {
+namespace {
+
+using machine::Role;
+
+constexpr std::int64_t kIslandSlackUs = 1'000'000;
+
+}  // namespace
+
+Forwarding::Forwarding(Context& context) : context_(context) {
+  for (std::size_t i = 0; i < context.who.devices.size(); ++i) {
+    const Device& device = context.who.devices[i];
+    if (device.role != Role::kSink || !device.known) continue;
+    Line& line = lines_.emplace_back();
+    line.sink = static_cast<std::uint16_t>(i);
+    line.am = device.am;
+    line.island = device.island;
+    line.serial = device.shows_line();
+    line.slack_us = device.whole ? context.response_us() : kIslandSlackUs;
+  }
+}
+
+bool Forwarding::Line::changing(std::int64_t time_us) const {
+  return std::abs(time_us - island_changed_us) < slack_us;
+}
+
+bool Forwarding::holds(const Ring<Passing, kRoom>& ring, const Net& net, bool waiting) {
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const Passing& passing = ring.newest(i);
+    const bool wanted = !waiting || passing.passed < passing.copies;
+    if (wanted && same_message(passing.net, net)) return true;
+  }
+  return false;
+}
+
+Forwarding::Line* Forwarding::find(std::uint16_t sink) {
+  const auto found = std::ranges::find(lines_, sink, &Line::sink);
+  return found == lines_.end() ? nullptr : &*found;
+}
+
+void Forwarding::set_island(std::uint16_t sink, std::uint16_t island, std::int64_t now_us,
+                            bool sure) {
+  Line* const line = find(sink);
+  if (line == nullptr || line->island == island) return;
+  // It may pass on as the sink of either island what still waits.
+  forget_owed(line->up, line->owed_up);
+  forget_owed(line->down, line->owed_down);
+  line->island_changed_us = now_us;
+  line->island_sure = sure;
+  line->last_island = line->island;
+  line->island = island;
+}
+
+void Forwarding::begin_life(std::uint16_t sink) {
+  Line* const line = find(sink);
+  if (line == nullptr) return;
+  line->up.clear();
+  line->down.clear();
+  line->owed_up = line->owed_down = 0;
+  line->off = line->deaf = false;
+  if (context_.device(sink).hearing) line->island = context_.device(sink).island;
+}
+
+void Forwarding::serial_set(std::uint16_t sink, bool on) {
+  Line* const line = find(sink);
+  if (line == nullptr) return;
+  line->off = !on;
+  if (!on) forget_owed(line->up, line->owed_up);
+}
+
+void Forwarding::forget_owed(Ring<Passing, kRoom>& ring, std::uint32_t& owed) {
+  for (std::size_t i = 0; i < ring.size(); ++i) ring.newest(i).owed = false;
+  owed = 0;
+}
+
+void Forwarding::radio_set(std::uint16_t sink, bool on) {
+  Line* const line = find(sink);
+  if (line == nullptr) return;
+  line->deaf = !on;
+  if (!on) forget_owed(line->down, line->owed_down);
+}
+
+void Forwarding::store(Ring<Passing, kRoom>& ring, const Passing& passing, std::uint32_t& owed) {
+  if (ring.full() && ring.oldest(0).owed) --owed;
+  Passing& stored = ring.push(passing);
+  if (passing.owed) ++owed;
+  for (std::size_t i = 1; i < std::min(ring.size(), kTwinsLook); ++i) {
+    Passing& other = ring.newest(i);
+    if (!same_message(other.net, stored.net)) continue;
+    other.twin = stored.twin = true;
+    return;
+  }
+}
+
+void Forwarding::repeated(const Net& net, std::uint16_t sink) {
+  for (Line& line : lines_) {
+    if (sink != kNobody && line.sink != sink) continue;
+    Ring<Passing, kRoom>& ring = sink == kNobody ? line.up : line.down;
+    for (std::size_t i = 0; i < std::min(ring.size(), kTwinsLook); ++i) {
+      Passing& passing = ring.newest(i);
+      if (!same_message(passing.net, net)) continue;
+      if (passing.copies < 255) ++passing.copies;
+      passing.twin = true;
+      break;
+    }
+  }
+}
+
+void Forwarding::surely_down(std::uint16_t sink, const Net& net, std::int64_t now_us) {
+  Line* const line = find(sink);
+  if (line == nullptr) return;
+  for (std::size_t i = 0; i < line->down.size(); ++i) {
+    Passing& passing = line->down.newest(i);
+    if (!same_message(passing.net, net)) continue;
+    passing.sure = true;
+    passing.whole_us = std::max(passing.whole_us, now_us);
+    if (passing.owes && !passing.owed && passing.passed == 0) {
+      passing.owed = true;
+      ++line->owed_down;
+    }
+    return;
+  }
+}
+
+void Forwarding::somebody_sent(const Net& net) {
+  for (Line& line : lines_) {
+    if (context_.device(line.sink).whole) continue;  // Its log would have it.
+    for (std::size_t i = 0; i < line.down.size(); ++i) {
+      Passing& passing = line.down.newest(i);
+      if (!same_message(passing.net, net)) continue;
+      if (passing.owed) --line.owed_down;
+      passing.owed = false;
+      if (passing.copies < 255) ++passing.copies;  // It may have been another's.
+      break;
+    }
+  }
+}
+
+}  // namespace rubric::check

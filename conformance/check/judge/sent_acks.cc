@@ -1,0 +1,134 @@
+// The acks of messages that nodes sent, and what their applications are told of them.
+#include "conformance/check/judge/peis_watch.h"
+#include "conformance/check/judge/sent.h"
+#include "conformance/machine/transport.h"
+
+namespace rubric::check {
+
+using machine::Role;
+
+void Originals::ack_heard(std::uint16_t node, const Net& ack, std::uint16_t acked) {
+  Ring<Sent, kRoom>& ring = sent_[node];
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    Sent& sent = ring.newest(i);
+    if (sent.net.seq_num == acked && sent.net.reliable == 1) sent.acked = true;
+  }
+  if (context_.device(node).application) acks_[node].push({ack, acked});
+}
+
+void Originals::ack_given(std::uint16_t node, const Net& ack, std::int64_t now_us) {
+  const std::int32_t acked = machine::acked_seq_num(ack.body());
+  Ring<Sent, kRoom>& ring = sent_[node];
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    Sent& sent = ring.newest(i);
+    const bool matches = sent.net.seq_num == acked && sent.net.reliable == 1 &&
+                         sent.net.src == ack.dest && sent.net.dest == ack.src &&
+                         sent.net.app_id == ack.app_id;
+    if (matches && sent.given_us < 0) sent.given_us = now_us;
+  }
+}
+
+// Returns whether an ack that fits the message in everything was heard.
+bool Originals::rightly_acked(std::uint16_t node, const Net& message) {
+  Ring<Ack, kRoom>& ring = acks_[node];
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const Ack& ack = ring.newest(i);
+    if (ack.number == message.seq_num && ack.net.src == message.dest &&
+        ack.net.app_id == message.app_id) {
+      return true;
+    }
+  }
+  return ring.size() == 0;
+}
+
+void Originals::told(std::uint16_t node, const Observation& seen, const machine::AckReceived& ack) {
+  const std::int64_t now = seen.place.time_us;
+  Ring<Sent, kRoom>& ring = sent_[node];
+  Sent* match = nullptr;
+  for (std::size_t i = 0; i < ring.size() && match == nullptr; ++i) {
+    Sent& sent = ring.newest(i);
+    if (sent.net.seq_num == ack.seq_num && sent.net.reliable == 1) match = &sent;
+  }
+  const std::string what = "receive_ack(" + std::string(ack.success ? "success" : "failure") +
+                           ", number " + number(ack.seq_num) + ")";
+  if (match == nullptr) {
+    // Messages from a base station to other islands pass where no log and no tap is read, and of
+    // many sent at once the first are forgotten here before their timeout.
+    const Device& device = context_.device(node);
+    const bool elsewhere = device.role == Role::kBaseStation && !logs_peis(context_.run, node);
+    const std::int64_t patience_us = kTimeouts * context_.ack_timeout_us() + context_.response_us();
+    const bool forgotten =
+        ring.full() && now - ring.newest(ring.size() - 1).place.time_us <= patience_us;
+    context_.report(ack.success ? "T3-SUCCESS"_rule : "T3-MATCH"_rule,
+                    elsewhere || forgotten ? Severity::kInconclusive
+                                           : context_.without(node, device.first_us, now),
+                    seen.place, node,
+                    {what + " although the node has sent no reliable message with that number.",
+                     "The number of the message that was acked.",
+                     {}});
+    return;
+  }
+  if (match->told++ > 0) {
+    context_.report("T3-ONCE"_rule, Severity::kFail, seen.place, node,
+                    {what + " again.", "One receive_ack for each message.", {}});
+    return;
+  }
+  if (match->net.sound && ack.app_id != match->net.app_id) {
+    context_.report("T3-SUCCESS"_rule, Severity::kFail, seen.place, node,
+                    {what + " for APPID " + number(ack.app_id) + "; the message had " +
+                         number(match->net.app_id) + ".",
+                     "receive_ack to the application that sent it.",
+                     {}});
+    return;
+  }
+  // An implementation may start its timer at either.
+  const std::int64_t waited = now - match->called_us;
+  const std::int64_t latest = context_.due_us(
+      node, match->place.time_us + context_.ack_timeout_us() + context_.response_us());
+  const std::int64_t since_ack = match->given_us < 0 ? 0 : now - match->given_us;
+  const bool overdue = match->given_us >= 0 && now > context_.due_us(node, match->given_us);
+  const bool too_late = seen.place.timed() && match->place.timed() && now > latest;
+  if (ack.success ? overdue : since_ack > context_.response_us()) {
+    context_.report("T3-SUCCESS"_rule, Severity::kFail, seen.place, node,
+                    {what + ", " + ms_text(now - match->given_us) + " after its ack had come.",
+                     "receive_ack(success) when the ack came.",
+                     {}});
+  } else if (ack.success && match->acked && !match->net.broadcast() &&
+             !rightly_acked(node,
+                            match->net)) {  // Of a broadcast any ack may count (decision 114).
+    const std::uint16_t acker = context_.mote_of_am[match->net.dest.devid];
+    const bool mote =
+        context_.without(acker, match->place.time_us, now) == Severity::kFail && acker != kNobody;
+    const bool sure = context_.device(node).hearing || mote || context_.options.sniffer_complete;
+    context_.report("T3-SENDER"_rule, sure ? Severity::kWeak : Severity::kInconclusive, seen.place,
+                    node,
+                    {what + ", but every ack with that number came from another node than " +
+                         text_of(match->net.dest) + " or for another APPID than " +
+                         number(match->net.app_id) + ".",
+                     "An ack counts from the message's destination, with its APPID.",
+                     {}});
+  } else if (ack.success && !match->acked) {
+    context_.report("T3-SUCCESS"_rule, context_.without(kNobody, match->place.time_us, now),
+                    seen.place, node,
+                    {what + ", but no ack of it was heard.", "No receive_ack before the ack.", {}});
+  } else if (!ack.success && seen.place.timed() && match->place.timed() &&
+             waited < context_.ack_timeout_us() - context_.early_us()) {
+    // Only a stated timeout can be broken (decision 110).
+    const bool stated = context_.ack_timeout_stated();
+    context_.report("T3-TIMEOUT"_rule, stated ? Severity::kFail : Severity::kInconclusive,
+                    seen.place, node,
+                    {what + " " + ms_text(waited) + " after the message.",
+                     "Not before the timeout, " + ms_text(context_.ack_timeout_us()) + ".",
+                     {}});
+  } else if (too_late && context_.ack_timeout_stated()) {
+    context_.report(
+        "T3-TIMEOUT"_rule, Severity::kFail, seen.place, node,
+        {what + " " + ms_text(waited) + " after the message.",
+         "receive_ack(failure) at the timeout, " + ms_text(context_.ack_timeout_us()) + ".",
+         {}});
+  } else {
+    context_.findings.kept(ack.success ? "T3-SUCCESS"_rule : "T3-TIMEOUT"_rule);
+  }
+}
+
+}  // namespace rubric::check
