@@ -233,6 +233,12 @@ class FrameWriter {
       const bool good = structure(*f.type, place.scope, left(place), place.hard);
       if (!good || (size() == begin && i > kMostEmpty)) return false;
     }
+    if (!counted) {  // Bytes behind the last element would be one more.
+      const std::uint32_t part = add_part(PartKind::kArray, f, place);
+      draft_.parts[part].element_bytes = 1;
+      draft_.parts[part].open = true;
+      close_part(part);
+    }
     return count >= 0;
   }
 

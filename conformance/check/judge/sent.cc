@@ -55,8 +55,8 @@ void Originals::called(std::uint16_t node, const Observation& seen, const machin
   const Link down = base ? Link::kSerial : Link::kRadio;  // To its motes.
   const Link up = base ? Link::kPeis : device.role == Role::kSink ? Link::kSerial : Link::kRadio;
   const bool to_mote = here && call.dest.devid != machine::kNullDevid;
-  calls_[node].push(
-      {&call, {}, {}, seen.place, free || !shown || moved_[node], to_mote ? down : up});
+  const bool may_stay = free || !shown || moved_[node];
+  calls_[node].push({&call, {}, {}, seen.place, may_stay, to_mote ? down : up, may_stay});
 }
 
 void Originals::used(std::uint16_t node, std::uint16_t number) {
@@ -69,8 +69,10 @@ void Originals::used(std::uint16_t node, std::uint16_t number) {
 }
 
 void Originals::interrupted(std::uint16_t node) {
-  if (context_.device(node).whole) return;  // What was accepted waits until it is on again.
-  for (std::size_t i = 0; i < calls_[node].size(); ++i) calls_[node].newest(i).free = true;
+  const bool whole = context_.device(node).whole;  // What was accepted waits until it is on again.
+  for (std::size_t i = 0; i < calls_[node].size(); ++i) {
+    (whole ? calls_[node].newest(i).held : calls_[node].newest(i).free) = true;
+  }
 }
 
 // Only a log that has all that the node sends shows that a message never left.
@@ -114,8 +116,10 @@ void Originals::told(std::uint16_t node, const Observation& seen,
 void Originals::judge_refused(std::uint16_t node, const Observation& seen, const Call& call) {
   // These it must or may refuse (decision 114).
   const machine::Send& send = *call.send;
-  const bool all = send.dest.devid == machine::kBroadcastDevid;
-  const bool refusable = send.data.size() > machine::kAppDataMax || (send.reliable && all);
+  const std::uint16_t devid = send.dest.devid;
+  const bool nobody = machine::is_reserved(devid) && devid != machine::kNullDevid;
+  const bool all = devid == machine::kBroadcastDevid;
+  const bool refusable = send.data.size() > machine::kAppDataMax || (all ? send.reliable : nobody);
   if (!context_.run.all_stated || call.free || refusable) return;
   std::size_t waiting = 0;
   for (std::size_t i = 0; i < calls_[node].size(); ++i) {
@@ -162,7 +166,7 @@ void Originals::judge_order(std::uint16_t node, const Observation& seen, const C
 void Originals::judge_late(std::uint16_t node, const Observation& seen, const Call& call,
                            Link link) {
   const std::int64_t called_us = call.place.time_us;
-  if (!context_.device(node).whole || call.free || call.result != call.left) return;
+  if (!context_.device(node).whole || call.held || call.result != call.left) return;
   if (seen.place.time_us <= context_.due_us(node, called_us, link)) return;
   // It may have waited behind another one.
   const bool behind =
@@ -448,8 +452,8 @@ void Originals::close(std::uint16_t node, std::size_t newest, std::int64_t now_u
   Ring<Sent, kRoom>& ring = sent_[node];
   const Sent& sent = ring.newest(newest);
   if (!context_.device(node).application || !sent.place.timed() || sent.told > 0) return;
-  const bool awaits = sent.net.reliable == 1 && sent.net.sound && !sent.net.broadcast() &&
-                      sent.net.trans_id == component::kConnless;
+  const bool awaits =
+      sent.net.reliable == 1 && sent.net.sound && sent.net.trans_id == component::kConnless;
   if (!awaits || context_.profile().ack_timeout_ticks == 0) return;
   for (std::size_t i = 0; i < newest; ++i) {  // Sent again by its application: one event for both.
     if (ring.newest(i).net.seq_num == sent.net.seq_num) return;

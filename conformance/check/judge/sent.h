@@ -60,7 +60,7 @@ class Originals {
   void judge_content(std::uint16_t node, const Observation& seen, const Net& net);
 
  private:
-  static constexpr std::size_t kRoom = 32;
+  static constexpr std::size_t kRoom = 128;
   static constexpr std::int64_t kTimeouts = 2;  ///< After so many stated ones there is no event.
 
   struct Call {
@@ -70,6 +70,7 @@ class Originals {
     Place place;
     bool free = false;                           ///< It need not leave, or that is not seen.
     machine::Link line = machine::Link::kRadio;  ///< By which it leaves.
+    bool held = false;                           ///< An interface was off, or it need not leave.
     std::int64_t left_us = -1;                   ///< When it left.
   };
 

@@ -38,6 +38,7 @@ class SynapticWatch {
  private:
   static constexpr std::size_t kChannelsMax = 16;
   static constexpr std::size_t kOldsMax = 64;
+  static constexpr std::size_t kTickCrowd = 2;  ///< So many frames may have filled a buffer.
 
   /// Times at which a channel did something, newest last; shows the grid of the clock's ticks.
   struct Ticks {
@@ -108,11 +109,13 @@ class SynapticWatch {
   };
 
   Out* find(Node& node, machine::ChannelId id);
+  machine::ChannelId input_id(std::uint16_t device, const Net& net) const;
   static In* find_in(Node& node, machine::ChannelId id);
   void note_inputs(Node& node, const machine::Synaptic& before, std::int64_t now_us);
   void begin(std::uint16_t device);
   static bool is_local(const Node& node, const machine::Channel& channel);
   bool news_of_nothing(Node& node, const In& in);
+  bool always_news(Node& node, const In& in);
   std::int64_t able_since(std::uint16_t device, std::int64_t now_us,
                           std::optional<machine::Link> line) const;
   std::int64_t patience_us(std::uint16_t device, bool first) const;

@@ -187,8 +187,10 @@ class Shrinker {
   void drop_headers() {
     for (std::size_t i = file_.head.size(); i-- > 0;) {
       const auto& what = (*file_.head[i].as<Header>()).what;
+      // Without its %for a trace would be for nodes that state something else.
       if (std::holds_alternative<trace::VersionHeader>(what) ||
-          std::holds_alternative<trace::ProfileHeader>(what)) {
+          std::holds_alternative<trace::ProfileHeader>(what) ||
+          std::holds_alternative<trace::ForHeader>(what)) {
         continue;
       }
       trace::File candidate = file_;
