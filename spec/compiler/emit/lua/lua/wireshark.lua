@@ -228,18 +228,24 @@ local function mask_text(field, value)
   return #names == 0 and "0" or table.concat(names, "|")
 end
 
--- Of a number's bits, IEEE 754 binary32.
+-- Of a number's bits, IEEE 754 binary32: the shortest text that reads back.
 local function float_text(bits)
   local exponent, fraction = math.floor(bits / 2 ^ 23) % 256, bits % 2 ^ 23
-  local value
-  if exponent == 255 then
-    value = fraction == 0 and math.huge or 0 / 0
-  elseif exponent == 0 then
-    value = fraction * 2 ^ -149
-  else
-    value = (fraction + 2 ^ 23) * 2 ^ (exponent - 150)
-  end
-  return string.format("%.7g", bits >= 2 ^ 31 and -value or value)
+  local sign = bits >= 2 ^ 31 and "-" or ""
+  if exponent == 255 then return sign .. (fraction == 0 and "inf" or "nan") end
+  if exponent == 0 and fraction == 0 then return sign .. "0" end
+  local step = 2 ^ (math.max(exponent, 1) - 150)  -- To the next larger number.
+  local value = (exponent == 0 and fraction or fraction + 2 ^ 23) * step
+  local digits, short, off = 0  -- Digits after the first one.
+  repeat
+    short = string.format("%." .. digits .. "e", value)
+    off = tonumber(short) - value
+    digits = digits + 1
+    local room = (off < 0 and fraction == 0 and exponent > 1) and step / 4 or step / 2
+  until math.abs(off) < room or math.abs(off) == room and fraction % 2 == 0
+  local power = tonumber(short:match("e(.*)"))
+  if power < -4 or power >= 16 then return sign .. short end
+  return sign .. string.format("%." .. math.max(0, digits - 1 - power) .. "f", tonumber(short))
 end
 
 local function number_text(field, value)
