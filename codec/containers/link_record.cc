@@ -159,13 +159,14 @@ void decode_ppi(Bytes record, std::uint64_t original_bytes, ReqId container, Pac
     return;
   }
   const std::uint32_t inner = load_le32(record.data() + 4);
-  if (header < kHeaderBytes || inner == kLinkPpi) {
+  if (header < kHeaderBytes || inner > UINT16_MAX || inner == kLinkPpi) {
     packet.error = fail(Fault::kUnexpected, header < kHeaderBytes ? 2 : 4, container).error;
     return;
   }
   packet.offset_bytes += header;
-  decode_record(record.from(header), original_bytes - header, static_cast<std::uint16_t>(inner),
-                container, packet);
+  // A broken capture may state fewer bytes than the header has.
+  const std::uint64_t rest = original_bytes - std::min<std::uint64_t>(original_bytes, header);
+  decode_record(record.from(header), rest, static_cast<std::uint16_t>(inner), container, packet);
   packet.radio.more = packet.radio.more || header > kHeaderBytes;
 }
 

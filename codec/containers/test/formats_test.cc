@@ -239,6 +239,7 @@ TEST(WirePcap, ARecordAfterAPpiHeader) {
       {"0000 0900 c3000000", 0, 0, "00000900c3000000", {Fault::kTruncated, 8, "WIRE-PCAP"_rule}},
       {"0000 0700 c3000000", 0, 0, "00000700c3000000", {Fault::kUnexpected, 2, "WIRE-PCAP"_rule}},
       {"0000 0800 c0000000", 0, 0, "00000800c0000000", {Fault::kUnexpected, 4, "WIRE-PCAP"_rule}},
+      {"0000 0800 c3000100", 0, 0, "00000800c3000100", {Fault::kUnexpected, 4, "WIRE-PCAP"_rule}},
       {"0000 0800 69000000 11", 0, 8, "11", {Fault::kUnsupported, 0, "WIRE-PCAP"_rule}},
   };
   for (const PpiCase& row : rows) {
@@ -249,6 +250,25 @@ TEST(WirePcap, ARecordAfterAPpiHeader) {
     EXPECT_EQ(to_hex(packet.bytes), row.bytes) << row.record;
     EXPECT_EQ(packet.error, row.error) << row.record;
   }
+}
+
+TEST(WirePcap, PpiHeadersAreNotNested) {
+  // 0x100C0 is PPI in its low 16 bits: each level would take stack.
+  const std::string header = from_hex("0000 0800 c0000100");
+  std::string record;
+  for (int i = 0; i < 32 * 1024; ++i) record += header;
+  Packet packet;
+  decode_record(view(record), record.size(), kLinkPpi, "WIRE-PCAP"_rule, packet);
+  EXPECT_EQ(packet.offset_bytes, 0U);
+  EXPECT_EQ(packet.error, (Error{Fault::kUnexpected, 4, "WIRE-PCAP"_rule}));
+}
+
+TEST(WirePcap, APpiHeaderLongerThanTheStatedRecord) {
+  const std::string record = from_hex("0000 0800 c3000000  02 00 01 31 a4");
+  Packet packet;
+  decode_record(view(record), 4, kLinkPpi, "WIRE-PCAP"_rule, packet);
+  EXPECT_EQ(packet.dropped_bytes, 0U);
+  EXPECT_EQ(packet.error, kSound);
 }
 
 struct RadioCase {
