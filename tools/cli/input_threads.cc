@@ -20,16 +20,24 @@ InputThreads::InputThreads(const InputOptions& options) : running_(options.files
   sigset_t before;
   ::sigfillset(&all);
   ::pthread_sigmask(SIG_SETMASK, &all, &before);
-  for (std::size_t file = 0; file < options.files.size(); ++file) {
-    InputOptions one = options;
-    one.files = {options.files[file]};
-    one.progress = false;
-    threads_.emplace_back([this, one = std::move(one), file] { read(one, file); });
+  try {
+    for (std::size_t file = 0; file < options.files.size(); ++file) {
+      InputOptions one = options;
+      one.files = {options.files[file]};
+      one.progress = false;
+      threads_.emplace_back([this, one = std::move(one), file] { read(one, file); });
+    }
+  } catch (...) {  // The system gives no more threads.
+    ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
+    end();
+    throw;
   }
   ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
 }
 
-InputThreads::~InputThreads() {
+InputThreads::~InputThreads() { end(); }
+
+void InputThreads::end() {
   lines::request_stop();
   {
     const std::lock_guard lock(mutex_);

@@ -17,7 +17,7 @@ namespace rubric::cli {
 
 /// Reads every file and line of an InputOptions in a thread of its own, as read_packets() does, so
 /// that lines are confirmed however long the handling of a packet takes. Threads end when their
-/// sources end, or when the user asks to stop (live/stop.h).
+/// sources end, or when the user asks to stop (codec/lines/stop.h).
 class InputThreads {
  public:
   explicit InputThreads(const InputOptions& options);
@@ -49,6 +49,7 @@ class InputThreads {
 
   void read(InputOptions options, std::size_t file);
   void keep(const Packet& packet, const Source& source, std::size_t file);
+  void end();
 
   std::mutex mutex_;
   std::condition_variable came_;

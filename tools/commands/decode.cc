@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <ctime>
 #include <filesystem>
@@ -34,8 +35,8 @@
 namespace rubric::tools {
 namespace {
 
-constexpr std::int64_t kNoPrevious = kNoTime;
 constexpr std::uintmax_t kLongBytes = 64 * 1024 * 1024;  // Captures that all cores decode.
+constexpr std::uint64_t kThreadsMost = 256;
 
 struct DecodeOptions {
   cli::InputOptions input;
@@ -109,7 +110,7 @@ class Clock {
   std::int64_t shown(std::int64_t time_ns) {
     if (none_ || time_ns == kNoTime) return kNoTime;
     if (!relative_ && !delta_) return time_ns;
-    if (reference_ns_ == kNoPrevious) reference_ns_ = time_ns;
+    if (reference_ns_ == kNoTime) reference_ns_ = time_ns;
     // Wraps instead of overflowing: damaged stamps can be anything.
     const auto difference = static_cast<std::int64_t>(static_cast<std::uint64_t>(time_ns) -
                                                       static_cast<std::uint64_t>(reference_ns_));
@@ -144,7 +145,7 @@ class Clock {
   bool utc_;
   bool local_;
   std::string text_;
-  std::int64_t reference_ns_ = kNoPrevious;
+  std::int64_t reference_ns_ = kNoTime;
 };
 
 /// Decodes packets and prints them; each thread has its own.
@@ -191,7 +192,7 @@ std::size_t threads_for(const DecodeOptions& options) {
   // What a line shows depends on the line before it, or on how many there are.
   const bool in_line = options.count != 0 || options.time == "relative" || options.time == "delta";
   if (in_line || !options.write.path.empty() || cli::goes_on(options.input)) return 1;
-  if (options.each.jobs != 0) return options.each.jobs;
+  if (options.each.jobs != 0) return std::min(options.each.jobs, kThreadsMost);
   std::uintmax_t bytes = 0;
   for (const std::string& file : options.input.files) {
     std::error_code ignored;

@@ -15,12 +15,19 @@ constexpr std::size_t kWaitingMost = 8;  // Batches: memory does not grow with t
 
 DecodeThreads::DecodeThreads(std::size_t threads, const std::function<Decode()>& make, Take take)
     : take_(std::move(take)) {
-  for (std::size_t i = 0; i < threads; ++i) {
-    threads_.emplace_back([this, decode = make()] { run(decode); });
+  try {
+    for (std::size_t i = 0; i < threads; ++i) {
+      threads_.emplace_back([this, decode = make()] { run(decode); });
+    }
+  } catch (...) {  // The system gives no more threads.
+    end();
+    throw;
   }
 }
 
-DecodeThreads::~DecodeThreads() {
+DecodeThreads::~DecodeThreads() { end(); }
+
+void DecodeThreads::end() {
   {
     const std::lock_guard lock(mutex_);
     ended_ = true;

@@ -65,6 +65,7 @@ class DecodeThreads {
   };
 
   void run(const Decode& decode);
+  void end();
   bool pass_on();
   void begin_batch(std::size_t bytes);
   Bytes keep(Bytes bytes);
