@@ -98,10 +98,7 @@ bool write(const std::filesystem::path& folder, const rubricc::GeneratedFile& fi
   return false;
 }
 
-int run(CompilerOptions options) {
-  options.requirements = found(options.requirements);
-  options.profiles = found(options.profiles);
-  options.cases = found(options.cases);
+int run(const CompilerOptions& options) {
   std::vector<std::string> inputs = options.files;
   inputs.push_back(options.requirements);
   for (const std::string& input : inputs) {
@@ -144,14 +141,17 @@ int main(int argc, char** argv) {
   rubric::cli::Command program(
       "rubricc",
       "Check wire specs (a strict profile of Kaitai Struct) and generate code from them.");
-  program
-      .add_option("--requirements", options.requirements,
-                  "Read the catalogue of requirements from this file")
-      .show_default();
-  program.add_option("--profiles", options.profiles, "Read the profiles (.yaml) from this folder")
-      .show_default();
-  program.add_option("--cases", options.cases, "Read the golden traces (.rtr) from this folder")
-      .show_default();
+  const auto requirements = program
+                                .add_option("--requirements", options.requirements,
+                                            "Read the catalogue of requirements from this file")
+                                .show_default();
+  const auto profiles =
+      program
+          .add_option("--profiles", options.profiles, "Read the profiles (.yaml) from this folder")
+          .show_default();
+  const auto cases =
+      program.add_option("--cases", options.cases, "Read the golden traces (.rtr) from this folder")
+          .show_default();
   auto check = program.add_flag("--check", options.check, "Check, and write nothing");
   auto emit = program.add_option("--emit", options.emit, "Generate these, separated by commas")
                   .delimiter(',')
@@ -159,13 +159,15 @@ int main(int argc, char** argv) {
   const auto out = program.add_option("--out", options.out, "Write into this folder");
   program.add_option("FILE", options.files, "Wire specs (.ksy)").required();
   program.footer(
-      "What is read by default is what was installed with this program, unless it is below the\n"
-      "folder where it runs.\n"
+      "Default files are those below the working folder, else those installed with this program.\n"
       "Exit codes: 0 fine, 1 mistakes in the input, 64 usage, 66 a file cannot be read, 74 a file\n"
       "cannot be written.");
   check.excludes(emit).excludes(out);
   emit.needs(out);
   program.exit_code_of([&] {
+    if (!requirements.is_given()) options.requirements = found(options.requirements);
+    if (!profiles.is_given()) options.profiles = found(options.profiles);
+    if (!cases.is_given()) options.cases = found(options.cases);
     if (options.check || !options.emit.empty()) return run(options);
     throw rubric::cli::UsageError("--check or --emit is required");
   });
