@@ -209,6 +209,7 @@ class AppReader {
     const YAML::Node unstated =
         out_.profiles.empty() ? need(node, "unstated", "a parameter") : node["unstated"];
     if (unstated) one.unstated = number(unstated, one.max);
+    if (unstated && one.unstated < one.min) fail(unstated, "unstated is less than min");
     if (const YAML::Node decision = node["decision"]) {
       one.decision = static_cast<int>(number(decision, kU2));
     }

@@ -86,6 +86,8 @@ TEST(Protocol, MistakesHaveTheirPlaces) {
        "app.yaml:9:17: a parameter without 'unstated'"},
       {head + "parameters: {p: {unit: ticks, min: 3, max: 2, unstated: 2, doc: D}}\n",
        "app.yaml:9:17: max is less than min"},
+      {head + "parameters: {p: {unit: ticks, min: 3, max: 9, unstated: 2, doc: D}}\n",
+       "app.yaml:9:57: unstated is less than min"},
       {head + "calls: {c: {a: sped}}\n",
        "app.yaml:9:16: unknown type 'sped' (did you mean 'speed'?); known are u1, u2, u4, f4, "
        "bytes, address, channel, enums of this file, masks of oscilloscope"},
