@@ -4,11 +4,10 @@
 Usage: pc_channels_test.py RUBRIC TARGET...
 """
 
-import pathlib
-import subprocess
 import sys
-import tempfile
 import unittest
+
+from testing import Folder, rubric
 
 CALLS = {"create_out(dest=11:5 size=1 mode=reliable)": "channel_result(0->0 fail)",
          "create_in(src=11:5 size=1 mode=power_save)": "channel_result(0->0 fail)",
@@ -19,24 +18,22 @@ CALLS = {"create_out(dest=11:5 size=1 mode=reliable)": "channel_result(0->0 fail
          "stop_all": "op_result(fail)"}
 
 
-class Channels(unittest.TestCase):
+class Channels(Folder):
     def test_calls_are_refused(self):
         lines = ["%rtr 1", "%profile paper"]
         for i, (call, answer) in enumerate(CALLS.items()):
             lines += [f"case pc.call{i}", "; A call of channels.",
                       "%node bA base_station island=11 iut", f"a: 100     bA < app {call}",
                       f"   a+0..50 bA > app {answer}"]
-        with tempfile.TemporaryDirectory() as folder:
-            trace = pathlib.Path(folder) / "pc.rtr"
-            trace.write_text("\n".join(lines) + "\n", encoding="utf-8")
-            for target in TARGETS:
-                with self.subTest(target=target):
-                    run = subprocess.run([RUBRIC, "test", "--target", target, trace], check=False,
-                                         capture_output=True, text=True)
-                    self.assertIn(f": {len(CALLS)} pass.", run.stdout, run.stderr)
+        trace = self.folder / "pc.rtr"
+        trace.write_text("\n".join(lines) + "\n", encoding="utf-8")
+        for target in TARGETS:
+            with self.subTest(target=target):
+                _, out, err = rubric("test", "--target", target, trace)
+                self.assertIn(f": {len(CALLS)} pass.", out, err)
 
 
 if __name__ == "__main__":
-    RUBRIC, *TARGETS = sys.argv[1:]
+    TARGETS = sys.argv[1:]
     del sys.argv[1:]
     unittest.main()

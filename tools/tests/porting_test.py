@@ -7,7 +7,6 @@ Usage: porting_test.py RUBRIC PROJECT_FOLDER [--regenerate]
 
 import fnmatch
 import json
-import os
 import pathlib
 import re
 import shutil
@@ -19,9 +18,8 @@ import unittest
 import yaml
 
 from readme.number import readme_number
+from testing import ROOT, RUBRIC, run
 
-RUBRIC = str(pathlib.Path(sys.argv[1]).resolve())
-ROOT = pathlib.Path(sys.argv[2]).resolve()
 PORTING = ROOT / "conformance/PORTING.md"
 TEXT = PORTING.read_text(encoding="utf-8")
 ADAPTER = ROOT / "conformance/adapters/python"
@@ -36,8 +34,7 @@ def blocks(language):
 
 
 def rubric(*words, folder=ROOT):
-    plain = {key: value for key, value in os.environ.items() if key != "GITHUB_ACTIONS"}
-    return subprocess.run([RUBRIC, *words], cwd=folder, capture_output=True, text=True, env=plain)
+    return run(*words, cwd=folder, text=True, env={"GITHUB_ACTIONS": ""})
 
 
 LINES_MAX = readme_number("traces: # lines around it")
@@ -133,7 +130,7 @@ def without_times(text):
 
 
 if __name__ == "__main__":
-    if sys.argv[3:] == ["--regenerate"]:
+    if sys.argv[2:] == ["--regenerate"]:
         regenerate()
     else:
         unittest.main(argv=sys.argv[:1])

@@ -8,27 +8,25 @@ the source, and against the records beside the captures, which no reader of ours
 import json
 import pathlib
 import subprocess
-import sys
 import tempfile
 import unittest
 
+from testing import FIRMWARE, run
+
 CAPTURES = pathlib.Path("spec/captures")
-FIRMWARE = CAPTURES / "firmware"
 BASE_STATION = CAPTURES / "basestation"
 
 # tshark's numbers of the link types IEEE802_15_4_WITHFCS, USER0 and USER1.
 RADIO, SERIAL, SF = "104", "45", "46"
 
-RUBRIC = None
-
 
 def tshark(path):
     """A dict for each packet, as Wireshark's dissectors see it."""
     # As root tshark warns on stderr, which says nothing about the file.
-    run = subprocess.run(["tshark", "-r", str(path), "-T", "json", "-x", "-J", "frame wpan"],
-                         capture_output=True, check=False)
-    assert run.returncode == 0, f"tshark cannot read {path.name}: {run.stderr.decode()}"
-    return [described(packet["_source"]["layers"]) for packet in json.loads(run.stdout)]
+    said = subprocess.run(["tshark", "-r", str(path), "-T", "json", "-x", "-J", "frame wpan"],
+                          capture_output=True, check=False)
+    assert said.returncode == 0, f"tshark cannot read {path.name}: {said.stderr.decode()}"
+    return [described(packet["_source"]["layers"]) for packet in json.loads(said.stdout)]
 
 
 def described(layers):
@@ -90,8 +88,7 @@ class Tshark(unittest.TestCase):
 
     def convert(self, source, name, *arguments):
         target = self.target(name)
-        subprocess.run([RUBRIC, "convert", *arguments, str(source), "-o", str(target)],
-                       capture_output=True, check=True)
+        run("convert", *arguments, source, "-o", target, check=True)
         return target
 
     def source(self, path):
@@ -206,13 +203,12 @@ class Tshark(unittest.TestCase):
     def test_nanoseconds_survive(self):
         """The captures count microseconds; a file that counts more finely loses nothing."""
         source = self.target("fine.pcapng")
-        line = subprocess.run([RUBRIC, "decode", str(FIRMWARE / "a_join_data.pcapng"), "--format",
-                               "jsonl", "--count", "1"], capture_output=True, check=True).stdout
+        line = run("decode", FIRMWARE / "a_join_data.pcapng", "--format", "jsonl", "--count", 1,
+                   check=True).stdout
         record = json.loads(line)
         record["time"] = 1700000000.123456789
         text = json.dumps(record).replace(json.dumps(record["time"]), "1700000000.123456789")
-        subprocess.run([RUBRIC, "encode", "--format", "pcapng", "-o", str(source)],
-                       input=text.encode(), capture_output=True, check=True)
+        run("encode", "--format", "pcapng", "-o", source, input=text.encode(), check=True)
         for name in ("out.pcapng", "out.pcap"):
             times = [packet["time"] for packet in self.converted(source, name)]
             self.assertEqual(times, ["1700000000.123456789"])
@@ -231,5 +227,4 @@ class Tshark(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    RUBRIC = sys.argv.pop(1)
     unittest.main()
