@@ -21,7 +21,6 @@ class Air {
   /// Takes part. Port 0 always makes a hub. Throws Broken.
   void open();
   void close() { socket_.close(); }
-  bool is_hub() const { return is_hub_; }
   /// Returns the port, also after port 0.
   std::uint16_t port() const { return at_.port; }
 

@@ -144,7 +144,6 @@ class LoopSearch {
     Liveness out;
     out.limit = build();
     out.states = states_.size();
-    out.transitions = transitions_;
     if (*out.limit != '\0') return out;
     std::vector<Vertex> waiting;
     for (Vertex v = 0; v < states_.size(); ++v) {
@@ -213,7 +212,6 @@ class LoopSearch {
       if (states_.size() > kVerticesMax) return "more than 5 million states for --liveness";
       packer_.unpack(states_[v].packed, world);
       network_.successors(world, ways_on_);
-      transitions_ += ways_on_.size();
       states_[v].first_step = steps_.size();
       for (std::size_t i = 0; i < ways_on_.size(); ++i) {
         const Vertex to = visit(ways_on_[i].world, v, i);
@@ -365,7 +363,6 @@ class LoopSearch {
   std::vector<State> states_;
   std::unordered_map<std::uint64_t, Vertex> index_;
   std::vector<Vertex> steps_;
-  std::uint64_t transitions_ = 0;
 };
 
 }  // namespace

@@ -35,7 +35,6 @@ namespace rubric::explore {
 struct Liveness {
   std::optional<Path> violation;  ///< With Path::loop.
   std::uint64_t states = 0;
-  std::uint64_t transitions = 0;
   std::uint64_t parts = 0;  ///< Strongly connected ones in which something waits.
   const char* limit = "";   ///< Why not everything was looked at.
 };

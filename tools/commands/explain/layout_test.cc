@@ -105,7 +105,6 @@ TEST(Reach, Ways) {
                           "and byte 2 is any other"));
   EXPECT_THAT(reach_texts(reaches(kRubicon, type("rubicon_ack"))),
               ElementsAre("body of app_msg if trans_id == rubicon_ack"));
-  EXPECT_TRUE(is_part(reaches(kRubicon, type("r_addr"))));
   EXPECT_TRUE(reaches(kRubicon, type("complete")).empty());
   const Type& oscilloscope =
       *reflect::find_type(oscilloscope::tables::kProtocol, "oscilloscope_msg");

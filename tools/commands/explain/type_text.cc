@@ -524,10 +524,4 @@ bool is_carrier(const Protocol& protocol, const Type& type) {
   return !carrier_of(protocol, type).empty();
 }
 
-bool is_part(const std::vector<Reach>& reaches) {
-  return !reaches.empty() && std::all_of(reaches.begin(), reaches.end(), [](const Reach& reach) {
-    return reach.key.empty() && reach.condition.empty();
-  });
-}
-
 }  // namespace rubric::explain

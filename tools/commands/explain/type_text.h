@@ -84,7 +84,4 @@ std::vector<std::int64_t> am_types(const std::vector<Reach>& reaches);
 /// Returns whether it is a carrier's structure rather than a message.
 bool is_carrier(const reflect::Protocol& protocol, const reflect::Type& type);
 
-/// Returns whether it is reached through fields of its type alone: part of a message.
-bool is_part(const std::vector<Reach>& reaches);
-
 }  // namespace rubric::explain
