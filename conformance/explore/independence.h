@@ -12,9 +12,8 @@
 //
 // Nothing is then left out that a property could tell:
 //   - Properties of a step, and that a listed mote acked, concern one mote and its sinks. Each
-//   state
-//     that a mote can be in with its sinks occurs, while the motes before it have ended and those
-//     after it have not begun.
+//     state that a mote can be in with its sinks occurs, while the motes before it have ended and
+//     those after it have not begun.
 //   - Properties of states at rest: one is at rest if every mote is, and the calls that follow once
 //     faults have stopped are steps of one mote each, so one fails where that mote alone fails.
 //   - Goals are events that some state must show. What is found is there; a goal that needs two

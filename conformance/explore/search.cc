@@ -302,8 +302,8 @@ class Search {
     return *limit_ == '\0';
   }
 
-  // What was left out is the like of what was searched only if these hold. A violation is one
-  // without them.
+  // Checks what the reductions rest on. A violation does not need it: it is a path of the machine
+  // itself.
   void check_reductions() {
     bool alike = false;
     try {

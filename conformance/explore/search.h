@@ -17,9 +17,8 @@
 //    cleared, and lists that are never full are sorted. Options::exact does without this, and a
 //    test holds that verdicts and lengths of counterexamples agree.
 // 4. Numbers (sites.h). Where they fit into 64 bits a state is known by them, one to one. Where
-// they
-//    do not, by a hash; then a violation could be missed, with a probability that is stated. None
-//    is invented: a path is walked again from the start.
+//    they do not, by a hash; then a violation could be missed, with a probability that is stated.
+//    None is invented: a path is walked again from the start.
 // 5. Time. `now` is 0 for ever, and a timer that is set may fire at any moment. Every order that
 //    real clocks allow is explored, and more: a counterexample may need an order that clocks
 //    forbid. It is walked again with a clock that runs (counterexample.h), so its times show that.
@@ -28,11 +27,10 @@
 //    within the step that began it, unless a link ack is awaited or Options::busy is set. Calls,
 //    reboots and sends are limited, repeated hearings may be. What lies beyond is not explored, and
 //    nothing is said of it.
-// 7. Symmetry (symmetry.h). Of states that differ in who is which mote and which sink, one is kept.
-//    Checked against every step of a node; off without Options::symmetry.
+// 7. Symmetry (symmetry.h). Of all states that differ only in which mote or sink is which, one is
+//    kept. Checked against every step of a node; off without Options::symmetry.
 // 8. Partial order (independence.h). Where motes' steps are independent, one mote's are taken
-// before
-//    the next one's. Checked before the search; off without Options::partial_order.
+//    before the next one's. Checked before the search; off without Options::partial_order.
 // Both keep a shortest violation's length: a path's orbit is made of paths, and what one mote
 // breaks is broken by the one that is searched first, before any other has begun.
 //

@@ -100,7 +100,7 @@ NodeFacts Symmetry::facts(const NodeFacts& of, std::size_t g) {
   return out;
 }
 
-// Who is addressed, and whether a link ack comes.
+// Returns whether both frames go to the same node, exchanged, and ask alike for a link ack.
 bool Symmetry::same_frame(FrameId id, std::size_t g) {
   const machine::Transmit& one = nodes_.frame(id);
   const machine::Transmit& other = nodes_.frame(frame(id, g));

@@ -4,7 +4,7 @@
 // exchange two of them in every id, number, list and frame of a network's state is a permutation g
 // of states. If each way on from a state s leads from g(s) to the exchanged result, all runs come
 // in such sets, and it is enough to follow one of each: the search keeps, of the states that are s
-// with motes and sinks exchanged (its orbit), the one that sorts first (Sites::sort). Properties
+// with motes and sinks exchanged (its orbit), the one that sorts first (Packer::sort). Properties
 // are kept or broken by all of an orbit, or, where they depend on an order (Healing), asked of
 // each. (Ip and Dill, Better verification through symmetry, 1996.)
 //

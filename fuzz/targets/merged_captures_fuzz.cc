@@ -1,5 +1,5 @@
-// Property: whatever two captures hold, they are refused as one run whichever is named first, or as
-// many frames of them are judged; findings are about frames of theirs; one named twice counts once.
+// Property: the order in which two captures are named changes neither whether they are refused nor
+// how many frames are judged; each finding names a file of the run; a file named twice counts once.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>

@@ -15,7 +15,7 @@ struct Reading {
   InputFormat format = InputFormat::kUnknown;
   ReaderOptions options;
   FcsKind fcs = FcsKind::kCrc;
-  std::string remark;  ///< What nobody asked for was decided from the content; empty: nothing.
+  std::string remark;  ///< Says what the content decided without an option; empty: nothing.
 };
 
 /// Returns whether its lines are the packets.

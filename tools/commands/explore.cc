@@ -63,10 +63,10 @@ std::string explore_footer() {
     text += fmt::format("  {:<19} {}\n", flaw.name, flaw.description);
   }
   return text +
-         "Of states that differ in who is which mote or sink one is kept, and where motes' steps "
-         "are\n"
-         "independent one mote's come before the next one's. Both are checked, and keep verdicts\n"
-         "and the lengths of traces; \"stand for\" counts the states without the first.\n"
+         "Symmetry keeps one of all states that differ only in which mote or sink is which.\n"
+         "Partial order takes one mote's steps before the next one's where they are independent.\n"
+         "Both are checked first, and keep verdicts and the lengths of traces;\n"
+         "\"stand for\" counts the states without symmetry.\n"
          "Time is abstract: a timer that is set may fire at any moment. Where nothing is broken,\n"
          "the run also fails if something that must be possible was never reached.\n"
          "Examples:\n"

@@ -248,7 +248,7 @@ void install(const InstallWiresharkOptions& options) {
   color(folders, options);
   if (options.dry_run) return;
   text::print(stdout,
-              "Wireshark shows it, when it is started anew, as 'RUBICON mote or sink'. Or:\n"
+              "Wireshark shows it, after a restart, as 'RUBICON mote or sink'. Or:\n"
               "  tshark -i rubric -o extcap.rubric.source:serial@/dev/ttyUSB0:telosb\n");
 }
 

@@ -246,7 +246,7 @@ islands:
         self.assertEqual(sink.end()[0], 0)
 
     def test_nobody_waits_for_a_slow_reader(self):
-        """Events that nobody reads wait, or are lost; messages are acknowledged in time."""
+        """Events that nobody reads wait, or are lost; messages are acknowledged."""
         place = socket.create_server(("127.0.0.1", 0))
         place.settimeout(PATIENCE_S)
         base = self.started("base-station", "--island", "11", "--sink",

@@ -170,8 +170,7 @@ def include_breaches(path, lines):
 def wire_breaches(path, lines):
     """Lines of C++ that know where a structure of the wire has its fields."""
     name = str(path)
-    test = path.stem.endswith(("_test", "_bench", "_fixture")) \
-        or path.stem in {"testing", "test_frames"}
+    test = path.stem.endswith(("_test", "_bench", "_fixture")) or path.stem == "testing"
     if path.suffix not in {".cc", ".h"} or test or "generated" in path.parts \
             or name.startswith(tuple(HAND_MADE)):
         return

@@ -57,7 +57,7 @@ class Source {
   /// Continues when poll found something, or next() may be over.
   void turn(short found, lines::SteadyTime now);
 
-  /// Returns whether give() may be called.
+  /// Returns whether send() may be called.
   bool takes() const { return is_up() && given_.empty(); }
   void send(Bytes packet, lines::SteadyTime now);
   /// Returns whether it has a packet of a client that was not given yet.
