@@ -310,6 +310,9 @@ class Install(unittest.TestCase):
         run(rubricc, "--emit", "cpp,tables,lua", "--out", "out", "mine.ksy", cwd=folder)
         header = folder / "out/codec/generated/mine/oscilloscope_msg.h"
         self.assertIn("OscilloscopeMsgView", header.read_text(encoding="utf-8"))
+        with self.assertRaisesRegex(AssertionError, "cannot read spec/requirements.yaml"):
+            run(rubricc, "--check", "--requirements", "spec/requirements.yaml", "mine.ksy",
+                cwd=folder)  # What is named is not looked for elsewhere.
 
     def test_the_readme_has_no_dead_links(self):
         text = next(self.prefix.glob("**/doc/rubric/README.md")).read_text(encoding="utf-8")
