@@ -187,6 +187,10 @@ class AppReader {
       if (!one->names.emplace(value, word(pair.second)).second) {
         fail(pair.first, "a number is given twice");
       }
+      const bool twice =
+          std::ranges::count(one->names, one->names[value],
+                             &std::pair<const std::uint32_t, std::string>::second) > 1;
+      if (twice) fail(pair.second, "a name is given twice");
     }
     for (const auto& [value, name] : one->names) one->entries.push_back({value, name.c_str()});
     const auto [at, fresh] = out_.enums.emplace(word(key), std::move(one));
@@ -200,6 +204,9 @@ class AppReader {
     Parameter one;
     one.id = static_cast<ParameterId>(out_.parameters.size());
     one.name = word(key);
+    for (const char* const taken : {"id", "island", "seed", "profile", "iut", "whole"}) {
+      if (one.name == taken) fail(key, quoted(taken) + " has a meaning in all protocols");
+    }
     one.unit = text(need(node, "unit", "a parameter"));
     one.doc = text(need(node, "doc", "a parameter"));
     one.min = number(need(node, "min", "a parameter"), kU4);

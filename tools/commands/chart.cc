@@ -37,7 +37,7 @@ constexpr const char* kChartFooter =
     "  rubric chart j4.wrong_seq\n"
     "  rubric chart open_door.lost --format svg --out open_door.svg\n"
     "  rubric chart my_traces.rtr:mine --target ./my_adapter\n"
-    "  rubric chart --protocol my_protocol poll.lost --target 'python3 my_protocol/node.py'\n"
+    "  rubric chart --protocol my_protocol answer.value --target 'python3 my_protocol/node.py'\n"
     "Exit codes: 0 drawn, 1 drawn, but the trace was not kept, 2 the trace cannot be\n"
     "run, 64 usage, 66 the file cannot be read, 74 output cannot be written.";
 

@@ -46,7 +46,7 @@ constexpr const char* kExplainFooter =
     "byte, an 802.15.4 frame.\n"
     "Examples:\n"
     "  rubric explain J4-SEQ\n"
-    "  rubric explain --protocol my_protocol POLL-ONCE\n"
+    "  rubric explain --protocol my_protocol ANSWER-VALUE\n"
     "Exit codes: 0 explained, 1 the frame is malformed, 64 usage or nothing of that\n"
     "name.";
 

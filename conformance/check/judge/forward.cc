@@ -312,7 +312,13 @@ bool Forwarding::sent_on_radio(std::uint16_t sink, const Observation& seen, cons
     context_.needs_host(sink, seen.place);
     return true;
   }
-  context_.report("N7-CONTENT"_rule, Severity::kFail, seen.place, sink,
+  // Sinks have one address, and it may be another's own.
+  const bool anothers = std::ranges::any_of(lines_, [&](const Line& other) {
+    return other.sink != sink && net.src == machine::Address{other.island, other.am};
+  });
+  const bool open = anothers && !context_.device(sink).hearing;
+  context_.report("N7-CONTENT"_rule, open ? Severity::kInconclusive : Severity::kFail, seen.place,
+                  sink,
                   {"The sink radiates " + name_of(net) + "; nobody sent it this.",
                    "Its own messages, and those that came to it.",
                    {}});

@@ -387,6 +387,8 @@ void MoteJoins::net_msg(std::uint16_t mote, const Observation& seen, const Net& 
     return;
   }
   const std::int64_t now = seen.place.time_us;
+  // Of two motes with one id in two islands it may be the other.
+  const bool only = context_.next_of_am[context_.mote_of_am[context_.device(mote).am]] == kNobody;
   std::vector<MoteHypothesis> before = set;
   std::erase_if(set, [&](const MoteHypothesis& h) {
     return !h.unknown && (h.join.phase != Phase::kMember || h.join.address != net.src);
@@ -395,7 +397,8 @@ void MoteJoins::net_msg(std::uint16_t mote, const Observation& seen, const Net& 
     const bool was_unknown = h.unknown;
     if (!was_unknown && h.acks_seen == 0 &&
         context_.without(mote, h.accepted_us, now) == Severity::kFail) {
-      context_.report("J4-ACK"_rule, Severity::kFail, seen.place, mote,
+      context_.report("J4-ACK"_rule, only ? Severity::kFail : Severity::kInconclusive, seen.place,
+                      mote,
                       {"A net_msg from " + text_of(net.src) + " before any ack_join.",
                        "ack_join first: messages leave in their order.",
                        {}});
@@ -430,11 +433,7 @@ void MoteJoins::net_msg(std::uint16_t mote, const Observation& seen, const Net& 
   Severity severity = h.join.phase == Phase::kOutside && h.first_request_us == 0
                           ? context_.without_ever(mote, now)
                           : context_.without(mote, since, now);
-  // Of two motes with one id in two islands it may be the other.
-  const std::uint16_t am = context_.device(mote).am;
-  if (context_.next_of_am[context_.mote_of_am[am]] != kNobody) {
-    severity = std::min(severity, Severity::kInconclusive);
-  }
+  if (!only) severity = std::min(severity, Severity::kInconclusive);
   context_.report(member ? "N1-SRC"_rule : "J11-SEND"_rule, severity, seen.place, mote,
                   std::move(said));
   MoteHypothesis next;

@@ -82,6 +82,9 @@ TEST(Legal, NoAlarmComesBack) {
     const char* recorder;
   };
   constexpr Alarm kAlarms[] = {
+      {"same_devid", 323, "exact"},               // A message of the namesake in the other island.
+      {"in_full", 634, "exact"},                  // A buffer filled over the response time.
+      {"host_loops_radiated", 975, "exact"},      // The other sink's own message.
       {"ack_join_often", 12, "drops_and_steps"},  // A step between repeats; the reply was dropped.
       {"stated_slow", 13, "steps_forth"},         // A step among reactions that all are slow.
       {"foreign_mote_to_sink", 46, "steps_forth"},  // A step before an ack to another island.

@@ -88,6 +88,10 @@ TEST(Protocol, MistakesHaveTheirPlaces) {
        "app.yaml:9:17: max is less than min"},
       {head + "parameters: {p: {unit: ticks, min: 3, max: 9, unstated: 2, doc: D}}\n",
        "app.yaml:9:57: unstated is less than min"},
+      {head + "parameters: {seed: {unit: ticks, min: 3, max: 9, unstated: 2, doc: D}}\n",
+       "app.yaml:9:14: 'seed' has a meaning in all protocols"},
+      {"protocol: p\nwire: w\nroles: {a: {links: []}}\nenums: {e: {0: ok, 2: ok}}\n",
+       "app.yaml:4:23: a name is given twice"},
       {head + "calls: {c: {a: sped}}\n",
        "app.yaml:9:16: unknown type 'sped' (did you mean 'speed'?); known are u1, u2, u4, f4, "
        "bytes, address, channel, enums of this file, masks of oscilloscope"},
