@@ -1,4 +1,5 @@
 // rubric: the command line. A subcommand is one file, which adds itself.
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -33,6 +34,16 @@ std::atomic<bool> without_memory = false;
   constexpr std::string_view kWhy = "rubric: out of memory\n";
   const ssize_t written = ::write(STDERR_FILENO, kWhy.data(), kWhy.size());
   ::_exit(written < 0 ? rubric::cli::kExitOutput : rubric::cli::kExitBroken);
+}
+
+// A file that is opened must not take the place of a standard stream that is closed. Reads of stdin
+// and writes to the others go on to fail.
+void hold_standard_streams() {
+  for (int fd = STDIN_FILENO; fd <= STDERR_FILENO; ++fd) {
+    if (::fcntl(fd, F_GETFD) >= 0) continue;
+    if (::open("/dev/null", fd == STDIN_FILENO ? O_WRONLY : O_RDONLY) != fd)
+      ::_exit(rubric::cli::kExitBroken);
+  }
 }
 
 int run(int argc, char** argv) {
@@ -74,6 +85,7 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  hold_standard_streams();
   // A closed pipe shows as a failed write, which ends the output without a word.
   std::signal(SIGPIPE, SIG_IGN);
   std::set_new_handler(note_no_memory);

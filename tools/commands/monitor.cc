@@ -100,7 +100,8 @@ class Screen {
   void put(std::string_view text) { output_.buffer().append(text); }
 
   void draw(const monitor::Board& board) {
-    const std::size_t width = cli::columns(0, STDOUT_FILENO);
+    const std::size_t screen = cli::screen_columns(STDOUT_FILENO);
+    const std::size_t width = screen != 0 ? screen : cli::columns(0, STDOUT_FILENO);
     const std::size_t height = cli::rows(STDOUT_FILENO);
     std::vector<std::string> lines = board.table(run::wall_ms());
     const std::size_t news = std::max<std::size_t>(3, height / 3);

@@ -176,6 +176,8 @@ int run_file(const RunOptions& options) {
   run::Ecology ecology = run::parse_ecology(text, options.role);
   if (!options.space.empty()) ecology.space = options.space;
   if (options.seed) ecology.seed = *options.seed;
+  ecology.gone_after_s = options.gone_after_s;
+  ecology.home_assistant = options.home_assistant;
   run::Keeper keeper;
   open_files(options, run::nodes_of(ecology), ecology.seed, keeper);
   run::run_ecology(ecology, options.credentials, keeper);
@@ -226,10 +228,39 @@ void check_run(const RunOptions& options) {
   check_names(options);
 }
 
+// Refuses options that would do nothing beside a file.
+void check_file(const RunOptions& options) {
+  const RunOptions usual;
+  const struct {
+    const char* option;
+    bool given;
+    const char* instead;
+  } refused[] = {
+      {"--id", options.id.has_value(), "write it in FILE.yaml, as 'id' of a mote"},
+      {"--island", options.island.has_value(), "write it in FILE.yaml, as 'island' of an island"},
+      {"--radio", options.radio != usual.radio, "write it in FILE.yaml, as 'radio' of an island"},
+      {"--serial", !options.serial.empty(), "write it in FILE.yaml, as 'serial' of an island"},
+      {"--sink", options.sink != usual.sink, "each base station of FILE.yaml has its own sink"},
+      {"--app", !options.app.empty(), "write it in FILE.yaml, as 'app' of a mote or island"},
+      {"--target", !options.target.empty(), "write it in FILE.yaml, as 'target' of a mote"},
+      {"--type", options.type != usual.type, "write it in FILE.yaml, as 'type' of a mote"},
+      {"--transducers", options.transducers != usual.transducers,
+       "write it in FILE.yaml, as 'transducers' of a mote"},
+      {"--actuators", options.actuators != usual.actuators,
+       "write it in FILE.yaml, as 'actuators' of a mote"},
+      {"--loss", options.loss_percent != 0, "write it in FILE.yaml, as 'loss' at its top"},
+      {"--listen", options.listen != 0, "is a proxy's"},
+      {"--network", !options.network.empty(), "is a proxy's"},
+  };
+  for (const auto& one : refused) {
+    if (one.given) throw cli::UsageError(one.option, one.instead);
+  }
+}
+
 bool is_file(const std::string& role) { return role.ends_with(".yaml") || role.ends_with(".yml"); }
 
 int run_node(const RunOptions& options) {
-  if (!is_file(options.role)) check_run(options);
+  is_file(options.role) ? check_file(options) : check_run(options);
   if (!options.write.path.empty()) cli::check_write(options.write, {}, true);
   cli::keep_apart("--log", options.log, {options.write.path});
   std::signal(SIGPIPE, SIG_IGN);

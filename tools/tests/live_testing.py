@@ -92,6 +92,30 @@ class Forwarder:
         return connection
 
 
+class Flood(threading.Thread):
+    """Writes the same again and again, faster than it can be read, until the other end has gone."""
+
+    def __init__(self, connection, data):
+        super().__init__(daemon=True)
+        self.connection = connection
+        self.data = data * (1 + (1 << 18) // len(data))
+        self.rounds = 0
+        self.start()
+        deadline = time.monotonic() + PATIENCE_S
+        while self.rounds < 4:
+            if time.monotonic() > deadline:
+                raise AssertionError("nobody reads")
+            time.sleep(0.01)
+
+    def run(self):
+        try:
+            while True:
+                self.connection.sendall(self.data)
+                self.rounds += 1
+        except OSError:
+            pass
+
+
 class Mote:
     """A mote at the end of a line, in a thread of its own.
 

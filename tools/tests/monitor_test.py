@@ -22,6 +22,9 @@ from live_testing import RUBRIC, Forwarder, LiveTest, Running
 from run_test import Node
 from serial_testing import PATIENCE_S, held_port
 
+# A reading of long ago.
+OLD = '{"creator":"11:null","time":"2020-01-31T23:59:59.123Z","data":{"light":{"raw":9}}}'
+
 
 class Watching(Running):
     """A running monitor."""
@@ -115,17 +118,29 @@ class Monitor(LiveTest):
         self.assertRegex(watch.until(r"\[2Jb 7"), "11:5 a\N{REPLACEMENT CHARACTER}\\[2Jb 7$")
         mote.process.kill()
         watch.until("11:5 has gone")
+        broker.publish("rubicon/11/motes/5/state", '{"light":{"raw":9}}')
+        watch.until("11:5 is heard again")
+        # How long ago a tuple was written makes nobody silent: it says itself who has gone.
+        broker.publish("rubicon/11/motes/9/state", OLD)
+        watch.until("11:9 light 9")
         base.process.kill()
         watch.until("11:pc has gone")
         code, out, _ = watch.end()
         self.assertEqual(code, 0)
-        self.assertRegex(out, r"11:5 +gone .*\(its base station has gone\)")
+        self.assertRegex(out, r"11:5 .*\(its base station has gone\)")
+        self.assertRegex(out, r"\n11:9 +\d+ s ")
 
     def test_a_terminal_is_redrawn(self):
+        self.draws(12, 70, rb"\x1b\[H[^\x1b]*NODE(?s:.*)11:5 +\d s.*light \d+")
+
+    def test_a_narrow_terminal(self):
+        self.draws(10, 40, rb"\x1b\[H[^\x1b]*NODE(?s:.*)11:5 +\d s")
+
+    def draws(self, rows, columns, pattern):
         _, air, _ = self.sink()
         end, other = pty.openpty()
         self.addCleanup(os.close, end)
-        fcntl.ioctl(other, termios.TIOCSWINSZ, struct.pack("HHHH", 12, 70, 0, 0))
+        fcntl.ioctl(other, termios.TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))
         process = subprocess.Popen([RUBRIC, "monitor", air], stdout=other)
         self.addCleanup(process.wait)
         self.addCleanup(process.kill)
@@ -134,21 +149,20 @@ class Monitor(LiveTest):
         self.mote(5, air)
         shown = b""
         deadline = time.monotonic() + PATIENCE_S
-        while not re.search(rb"\x1b\[H[^\x1b]*NODE(?s:.*)11:5 +\d s.*light \d+", shown):
+        while not re.search(pattern, shown):
             self.assertLess(time.monotonic(), deadline, shown)
             if select.select([end], [], [], 0.2)[0]:
                 shown += os.read(end, 4096)
         process.send_signal(signal.SIGINT)
-        while process.poll() is None:
-            if select.select([end], [], [], 0.1)[0]:
-                try:
-                    shown += os.read(end, 4096)
-                except OSError:
-                    break
+        while True:  # Until nobody has the terminal.
+            try:
+                shown += os.read(end, 4096)
+            except OSError:
+                break
         for screen in shown.split(b"\x1b[H")[1:-1]:
-            self.assertLessEqual(screen.count(b"\n"), 12)
+            self.assertLessEqual(screen.count(b"\n"), rows)
             for line in screen.split(b"\x1b[J")[0].split(b"\x1b[K"):
-                self.assertLessEqual(len(line.strip()), 70)
+                self.assertLessEqual(len(line.strip()), columns)
         self.assertIn(b"\x1b[?1049l", shown)
         self.assertEqual(process.wait(PATIENCE_S), 0)
 

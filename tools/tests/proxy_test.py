@@ -12,7 +12,7 @@ import subprocess
 import sys
 import unittest
 
-from live_testing import ROOT, LiveTest, Running
+from live_testing import ROOT, Flood, LiveTest, Running
 from serial_testing import PATIENCE_S
 
 HOME = ROOT / "conformance/node/examples/home_lines.py"
@@ -91,8 +91,9 @@ class Mote(Running):
             raise AssertionError("not joined")
 
 
-class Proxy(LiveTest):
+class ProxyTest(LiveTest):
     program = Mote
+    forgetting = ("--gone-after", "1")  # Of the sink.
 
     def waits_for(self, run, pattern):
         err = b""
@@ -116,12 +117,16 @@ class Proxy(LiveTest):
         self.asked = Piped(self.home.stdout)
         lines = self.asked.next()
         self.sink = self.started("run", "sink", "--island", "11", "--radio", "zep:0", "--serial",
-                                 "sf-server:0", "--gone-after", "1")
+                                 "sf-server:0", *self.forgetting)
         found = self.waits_for(self.sink, rb"(zep:\d+)\n[^$]*sf-server:(\d+)\n")
         self.air = found.group(1).decode()
-        self.proxy = self.started("run", "proxy", "--island", "11", "--sink",
-                                  f"sf@localhost:{found.group(2).decode()}", "--gone-after", "1",
-                                  "--network", f"lines:127.0.0.1:{lines}")
+        self.arguments = ("run", "proxy", "--island", "11", "--sink",
+                          f"sf@localhost:{found.group(2).decode()}", "--gone-after", "1",
+                          "--network", f"lines:127.0.0.1:{lines}")
+        self.begin()
+
+    def begin(self):
+        self.proxy = self.started(*self.arguments)
         # A sink reports a new mote once, so its line must have a reader by then.
         found = self.waits_for(self.proxy, rb"proxy at 127.0.0.1:(\d+)\n(?s:.*)sf@\S+: connected")
         self.port = int(found.group(1))
@@ -132,6 +137,8 @@ class Proxy(LiveTest):
         mote.joins(3)
         return mote
 
+
+class Proxy(ProxyTest):
     def test_subscriptions_configure_a_mote(self):
         one, two = Client(self, self.port), Client(self, self.port)
         # A device that is not there yet is read when it comes.
@@ -196,6 +203,82 @@ class Proxy(LiveTest):
         for device in ("1/1/8", "1/1/9"):
             client.event("left", device=device)
         self.assertEqual(self.proxy.end()[0], 0)
+
+    def test_a_flood_does_not_hold_it(self):
+        device = socket.create_server(("127.0.0.1", 0))
+        self.addCleanup(device.close)
+        proxy = self.started(*self.arguments[:-1], f"lines:127.0.0.1:{device.getsockname()[1]}")
+        port = int(self.waits_for(proxy, rb"proxy at 127.0.0.1:(\d+)\n").group(1))
+        device.settimeout(PATIENCE_S)
+        line, _ = device.accept()
+        self.addCleanup(line.close)
+        client = Client(self, port)
+        line.sendall(b"x" * 3000 + b" there a/b light\nthere c/d light\n")
+        self.assertEqual(json.loads(client.next())["device"], "c/d")
+        Flood(line, b"x y\n")
+        Flood(client.source, b'{"unsubscribe":"x"}\n')
+        # Others are heard meanwhile.
+        Client(self, port).event("device", device="c/d")
+        code, _, err = proxy.end()
+        self.assertEqual(code, 0, err)
+        self.assertIn("refused a line of more than 2048 bytes", err)
+        self.assertRegex(err, r"refused \d+ more")
+
+
+class Alive(ProxyTest):
+    """Motes that are there though the proxy has not heard of them for a while."""
+
+    forgetting = ()
+
+    def quiet(self, client):
+        """A mote that was told to be silent, and was, for the time after which it is missed."""
+        client.say(subscribe="11:5", sensors=["light"], period_ms=500)
+        mote = self.mote()
+        self.assertEqual(mote.sampling(), (500, {"light"}))
+        client.say(unsubscribe="11:5")
+        self.assertEqual(mote.sampling()[0], 0)
+        client.event("device", device="11:5")
+        self.proxy.event("mote_left")
+        client.say(subscribe="11:5", sensors=["temp"], period_ms=300)
+        return mote
+
+    def updates(self, mote):
+        mote.call("send", dest="11:65533", app_id=10, reliable=False, data="2301000102" + "00")
+
+    def test_a_silenced_mote_is_there(self):
+        client = Client(self, self.port)
+        mote = self.quiet(client)
+        self.assertEqual(mote.sampling(), (300, {"temp"}))
+        self.updates(mote)
+        self.assertEqual(json.loads(client.next())["event"], "reading")
+
+    def test_a_silenced_mote_that_has_gone(self):
+        client = Client(self, self.port)
+        self.quiet(client).process.kill()
+        client.event("left", device="11:5")
+
+    def test_a_mote_is_heard_again(self):
+        client = Client(self, self.port)
+        mote = self.mote()
+        client.event("left", device="11:5")
+        client.say(subscribe="11:5", sensors=["temp"], period_ms=300)
+        self.updates(mote)
+        self.assertEqual(client.event("device", device="11:5")["sensors"], ["light", "temp"])
+        client.event("reading", device="11:5")
+        self.assertEqual(mote.sampling(), (300, {"temp"}))
+
+    def test_a_mote_that_joined_before(self):
+        mote = self.mote()
+        self.proxy.event("received")
+        self.assertEqual(self.proxy.end()[0], 0)
+        self.begin()
+        client = Client(self, self.port)
+        client.say(subscribe="11:5", period_ms=300)
+        self.updates(mote)
+        device = client.event("device", device="11:5")
+        self.assertEqual((device["sensors"], device["actuators"]), (["light"], []))
+        self.assertEqual(client.event("reading")["data"], {"light": {"raw": 512}})
+        self.assertEqual(mote.sampling(), (300, {"light"}))
 
 
 if __name__ == "__main__":

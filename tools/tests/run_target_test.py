@@ -14,6 +14,15 @@ from run_test import IslandTest
 TARGETS = sys.argv[1:]
 del sys.argv[1:]
 
+# A target that only lets time pass.
+NO_CALLS = """
+import sys
+for line in sys.stdin:
+    words = line.split()
+    print({"hello": "hello rct/1 x 1 roles=mote time=virtual", "reset": "ready",
+           "until": f"next -\\ndone {words[-1]}"}.get(words[0], "unsupported that"), flush=True)
+"""
+
 
 class Targets(IslandTest):
     def judged(self, kept):
@@ -72,6 +81,27 @@ class Targets(IslandTest):
                                   "--target", target], capture_output=True, check=False, text=True)
             self.assertEqual(run.returncode, code, run.stderr)
             self.assertIn(text, run.stderr)
+
+    def test_a_call_that_is_unsupported(self):
+        """It is an error for who called, and the node goes on."""
+        target = next(target for target in TARGETS if "adapter.py" in target)
+        sink = self.started("sink", "--island", "11", "--radio", "zep:0")
+        air = "zep:" + sink.waits_for(rb"zep:(\d+)\n")
+        mote = self.started("mote", "--id", "5", "--radio", air, "--app", "-", "--target", target)
+        mote.call("set_island_id", island=12)
+        self.assertIn("unsupported", mote.lines(1)[0]["text"])
+        mote.call("join", type=1, transducers=3, actuators=2)
+        mote.event("joined", own="11:5", success=True)
+
+    def test_a_mote_of_a_file_that_breaks(self):
+        script = self.folder / "target.py"
+        script.write_text(NO_CALLS, encoding="utf-8")
+        plan = self.folder / "islands.yaml"
+        plan.write_text("islands:\n  - island: 11\n    radio: zep:0\n    motes:\n"
+                        f"      - {{id: 5, target: exec python3 {script}}}\n", encoding="utf-8")
+        run = subprocess.run([RUBRIC, "run", plan], capture_output=True, check=False, text=True)
+        self.assertEqual(run.returncode, 66, run.stderr)
+        self.assertRegex(run.stderr, "rubric: mote11_5: .*: unsupported: ")
 
     def test_a_mote_that_breaks(self):
         command = ("read x; echo hello rct/1 x 1 roles=mote time=virtual; read x; echo ready; "

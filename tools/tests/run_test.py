@@ -6,6 +6,7 @@ waits for what it needs, and only a bound of patience ends it otherwise; Minute 
 minute.
 """
 
+import fcntl
 import json
 import os
 import pathlib
@@ -16,7 +17,7 @@ import subprocess
 import time
 import unittest
 
-from live_testing import RUBRIC, ROOT, LiveTest, Running, lines_of
+from live_testing import RUBRIC, ROOT, Flood, LiveTest, Running, lines_of
 from serial_testing import PATIENCE_S
 from station_load import PACKET, message
 
@@ -35,6 +36,40 @@ for line in sys.stdin:
         knock()
     if event["event"] == "ack_received" and event["success"] and len(sys.argv) > 1:
         knock()
+"""
+
+# Says so much that no small pipe takes its events, and ends.
+TALKS = 60
+TALK = f"""
+import json, sys
+def call(name, **what):
+    print(json.dumps({{"call": name, **what}}), flush=True)
+call("join", type=1, transducers=1, actuators=1)
+count = 0
+for line in sys.stdin:
+    event = json.loads(line)["event"]
+    count += event == "ack_received"
+    if count == {TALKS}:
+        break
+    if event in ("joined", "ack_received"):
+        call("send", dest="11:65533", app_id=10, reliable=True, data="01")
+"""
+
+# Applications that join, and do something when their input has ended.
+WAITS = """
+import pathlib, sys, time
+print('{{"call":"join","type":1,"transducers":1,"actuators":1}}', flush=True)
+sys.stdin.read()
+path = pathlib.Path("{path}")
+while not path.exists() or path.read_text() != "second":
+    time.sleep(0.01)
+path.write_text("second first")
+"""
+ENDS = """
+import pathlib, sys
+print('{{"call":"join","type":1,"transducers":1,"actuators":1}}', flush=True)
+sys.stdin.read()
+pathlib.Path("{path}").write_text("second")
 """
 
 
@@ -266,6 +301,93 @@ islands:
                 answers += more
         self.assertEqual(len(base.lines(count)), count)
         self.assertEqual(base.end()[0], 0)
+
+    def test_a_flood_does_not_hold_it(self):
+        place = socket.create_server(("127.0.0.1", 0))
+        base = self.started("base-station", "--island", "11", "--sink",
+                            f"sf@127.0.0.1:{place.getsockname()[1]}")
+        place.settimeout(PATIENCE_S)
+        line, _ = place.accept()
+        place.close()
+        self.addCleanup(line.close)
+        line.sendall(b"U ")
+        base.waits_for(rb"(connected)")
+        packet = bytes.fromhex("00ffff0001042209") + b"abcd"  # Nothing to answer.
+        Flood(line, bytes([len(packet)]) + packet)
+        code, _, err = base.end()
+        self.assertEqual(code, 0, err)
+
+    def mote_file(self, *apps):
+        """A file with a mote for each of these applications, in Python, the first one mote 2."""
+        motes = ""
+        for number, app in enumerate(apps, 2):
+            script = self.folder / f"app{number}.py"
+            script.write_text(app, encoding="utf-8")
+            motes += f"      - {{id: {number}, app: exec python3 {script}}}\n"
+        plan = self.folder / "motes.yaml"
+        plan.write_text(f"islands:\n  - island: 11\n    radio: zep:0\n    motes:\n{motes}",
+                        encoding="utf-8")
+        return plan
+
+    def test_a_node_that_ends_takes_no_events_along(self):
+        """All nodes of a file write to one output, which a slow reader has not taken yet."""
+        run = self.started(self.mote_file(TALK))
+        fcntl.fcntl(run.process.stdout, fcntl.F_SETPIPE_SZ, 4096)
+        self.assertEqual(run.waits_for(rb"application of (mote11_2) has ended, and the node with"),
+                         "mote11_2")
+        # The rest of the island goes on meanwhile.
+        time.sleep(1.5)
+        for _ in range(TALKS):
+            run.event("received", node="pc11", src="11:2", app_id=10)
+        code, _, err = run.end()
+        self.assertEqual((code, err), (0, ""))
+
+    def test_applications_end_together(self):
+        """The first waits for what the second does when its input has ended."""
+        path = self.folder / "second"
+        run = self.started(self.mote_file(WAITS.format(path=path), ENDS.format(path=path)))
+        for _ in range(2):
+            run.event("joined", success=True)
+        self.assertEqual(run.end()[0], 0)
+        self.assertEqual(path.read_text(encoding="utf-8"), "second first")
+
+    def test_a_closed_stdout_is_no_file(self):
+        kept = self.folder / "run.pcapng"
+        command = 'exec "$0" run mote --id 5 --radio zep:0 --app - --write "$1" >&-'
+        subprocess.run(["sh", "-c", command, RUBRIC, kept], check=False,
+                       input=b'{"call":"get_clock"}\n')
+        self.assertNotIn(b"clock", kept.read_bytes())
+        self.assertEqual(kept.read_bytes()[:4], b"\n\r\r\n")
+
+    def test_options_beside_a_file(self):
+        plan = self.mote_file()
+        plan.write_text("islands:\n  - {island: 11, radio: zep:0}\n", encoding="utf-8")
+        for option, value in (("--id", "5"), ("--island", "11"), ("--radio", "zep:0"),
+                              ("--serial", "pty"), ("--sink", "sf@x:1"), ("--app", "demo"),
+                              ("--target", "machine"), ("--type", "2"), ("--loss", "5"),
+                              ("--transducers", "temp"), ("--actuators", "open"),
+                              ("--listen", "1"), ("--network", "lines:x:1")):
+            run = subprocess.run([RUBRIC, "run", plan, option, value], capture_output=True,
+                                 check=False, text=True, timeout=PATIENCE_S)
+            self.assertEqual(run.returncode, 64, run.stderr)
+            self.assertRegex(run.stderr, option + ": (write it in FILE.yaml, as|is a|each base)")
+        log = self.folder / "run.rtr"
+        run = self.started(plan, "--gone-after", "30", "--log", log)
+        run.waits_for(rb"(connected)")
+        self.assertEqual(run.end()[0], 0)
+        self.assertEqual(log.read_text(encoding="utf-8").count("gone_after=30720"), 2)
+
+    def test_lines_that_are_too_long_or_have_no_end(self):
+        mote = self.started("mote", "--id", "5", "--radio", "zep:0", "--app", "-")
+        mote.process.stdin.write(b"x" * (1 << 17) + b'\n{"call":"get_clock"}\n')
+        mote.process.stdin.flush()
+        self.assertEqual(mote.lines(1)[0],
+                         {"event": "error", "text": "a line of more than 65536 bytes"})
+        self.assertEqual(mote.lines(1)[0]["event"], "clock")
+        mote.process.stdin.write(b'{"call":"get_clock"}')
+        mote.process.stdin.close()
+        self.assertEqual(mote.lines(1)[0]["event"], "clock")
+        self.assertEqual(mote.end(None)[0], 0)
 
     def test_mistakes_of_a_file_have_their_line(self):
         island = "islands:\n  - island: 11\n"

@@ -297,6 +297,8 @@ void Process::ended_early() {
   throw TargetBroken(text);
 }
 
+void Process::close_input() { close_fd(in_fd_); }
+
 std::string Process::end(lines::Milliseconds grace) {
   close_fd(in_fd_);
   const bool itself = pid_ < 0 || exited(grace);

@@ -52,6 +52,8 @@ class Process {
   /// Returns the end of its standard error since the last call.
   std::string take_stderr();
 
+  /// Closes its standard input, by which it is asked to end.
+  void close_input();
   /// Closes its standard input, gives it `grace` to end, and then kills it. Returns what was wrong
   /// with its end; empty if it ended by itself, silently, with status 0.
   std::string end(lines::Milliseconds grace);

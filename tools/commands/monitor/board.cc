@@ -91,6 +91,7 @@ void Board::set_gone(Address address, Node& node, bool gone, const char* why, st
 
 void Board::heard(Address address, Node& node, std::int64_t now_ms) {
   node.heard_ms = now_ms;
+  node.on_line = true;
   ++node.frames;
   set_gone(address, node, false, "is heard again", now_ms);
 }
@@ -123,6 +124,7 @@ void Board::take(const check::Observation& seen, std::int64_t now_ms) {
   if (seen.kind != Kind::kRadio && seen.kind != Kind::kSerial) return;
   check::AckJoin ack;
   if (seen.frame.type == check::am::kAckJoin && check::parse_ack_join(seen.frame.payload, ack)) {
+    if (Node* const it = node(ack.src)) it->on_line = true;
     return joined(ack.src, ack.descriptor, now_ms);
   }
   check::Net net;
@@ -144,6 +146,7 @@ void Board::take(const check::Observation& seen, std::int64_t now_ms) {
   if (again) return;
   check::SerialJoined report;
   if (check::parse_serial_joined(net, report)) {
+    if (Node* const it = node(report.address)) it->on_line = true;
     return joined(report.address, report.descriptor, now_ms);
   }
   if (!net.sound || net.trans_id != check::component::kConnless) return;
@@ -183,6 +186,8 @@ void Board::take(const space::Tuple& tuple, std::int64_t now_ms) {
   if (key->kind == Kind::kState) {
     it->heard_ms = at_ms;
     ++it->frames;
+    // What stays may be older than what was said of its going.
+    if (!tuple.stays) set_gone(address, *it, false, "is heard again", now_ms);
     return read(address, *it, tuple.data, now_ms);
   }
   if (!it->gone && !online && it->heard_ms == 0) it->heard_ms = at_ms;
@@ -192,7 +197,7 @@ void Board::take(const space::Tuple& tuple, std::int64_t now_ms) {
 void Board::look(std::int64_t now_ms) {
   if (silent_ms_ == 0) return;
   for (auto& [address, node] : nodes_) {
-    if (node.heard_ms != 0 && now_ms - node.heard_ms >= silent_ms_) {
+    if (node.on_line && now_ms - node.heard_ms >= silent_ms_) {
       set_gone(address, node, true, "is silent", now_ms);
     }
   }

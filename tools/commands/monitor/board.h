@@ -46,6 +46,7 @@ class Board {
     std::uint64_t frames = 0;
     std::uint64_t repeats = 0;
     int joins = 0;
+    bool on_line = false;  // A frame showed it, not only tuples.
     bool gone = false;
     std::uint16_t number = 0;  // Of the last message.
     bool has_number = false;

@@ -19,7 +19,6 @@ using std::chrono::steady_clock;
 constexpr lines::Milliseconds kTryEvery{1000};
 constexpr lines::Milliseconds kOpenTime{200};
 constexpr lines::Milliseconds kWriteTime{200};
-constexpr std::size_t kLineMax = 400;
 constexpr std::size_t kDevicesMax = 1024;
 constexpr std::size_t kWordMax = 32;
 
@@ -42,8 +41,15 @@ bool is_name(const std::string& word) {
 
 }  // namespace
 
+LineNetwork::LineNetwork(lines::HostPort at, Above& above)
+    : at_(std::move(at)),
+      above_(above),
+      refusals_(fmt::format("lines:{}:{}", at_.host, at_.port)) {}
+
 lines::SteadyTime LineNetwork::run() {
   const auto now = steady_clock::now();
+  bool more = false;
+  refusals_.say_rest();
   try {
     if (!stream_.is_open()) {
       if (!devices_.empty()) {
@@ -55,22 +61,23 @@ lines::SteadyTime LineNetwork::run() {
       stream_ = lines::connect_tcp(at_, now + kOpenTime);
       text::print(stderr, "rubric: lines:{}:{}: connected\n", at_.host, at_.port);
       said_ = false;
-      input_.clear();
+      input_.rest();
     }
     std::uint8_t room[1024];
-    while (const std::size_t size = stream_.read(MutableBytes(room, sizeof room), now)) {
-      input_.append(reinterpret_cast<const char*>(room), size);
-      std::size_t begin = 0;
-      for (std::size_t end = 0; (end = input_.find('\n', begin)) != input_.npos; begin = end + 1) {
-        take(std::string_view(input_).substr(begin, end - begin));
-      }
-      input_.erase(0, begin);
-      if (input_.size() > kLineMax) input_.clear();
+    for (int reads = 0; reads < kReadsMax; ++reads) {
+      const std::size_t size = stream_.read(MutableBytes(room, sizeof room), now);
+      more = size > 0;
+      if (!more) break;
+      input_.add(
+          {reinterpret_cast<const char*>(room), size},
+          [this](std::string_view line) { take(line); },
+          [this] { refusals_.say(fmt::format("a line of more than {} bytes", kLineMax)); });
     }
   } catch (const lines::Broken& broken) {
     lost(broken.what());
   }
-  return stream_.is_open() ? lines::SteadyTime::max() : next_try_;
+  if (!stream_.is_open()) return next_try_;
+  return more ? now : lines::SteadyTime::max();
 }
 
 void LineNetwork::lost(const char* why) {
@@ -113,8 +120,7 @@ void LineNetwork::take(std::string_view line) {
       return above_.read(words[1], nlohmann::json{{words[2], {{"value", value}}}}.dump());
     }
   }
-  text::print(stderr, "rubric: lines:{}:{}: refused '{}'\n", at_.host, at_.port,
-              std::string(line.substr(0, 80)));
+  refusals_.say(fmt::format("'{}'", line.substr(0, 80)));
 }
 
 void LineNetwork::write(const std::string& line) {

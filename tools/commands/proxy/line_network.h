@@ -16,6 +16,8 @@
 
 #include "codec/lines/stream.h"
 #include "tools/commands/proxy/network.h"
+#include "tools/commands/run/line_splitter.h"
+#include "tools/commands/run/refusals.h"
 
 namespace rubric::proxy {
 
@@ -23,7 +25,7 @@ namespace rubric::proxy {
 /// foreign: a line that makes no sense is refused, with a line on stderr.
 class LineNetwork final : public Network {
  public:
-  LineNetwork(lines::HostPort at, Above& above) : at_(std::move(at)), above_(above) {}
+  LineNetwork(lines::HostPort at, Above& above);
 
   const char* name() const override { return "lines"; }
   void sample(const std::string& device, const Sampling& wanted) override;
@@ -32,6 +34,8 @@ class LineNetwork final : public Network {
   lines::SteadyTime run() override;
 
  private:
+  static constexpr std::size_t kLineMax = 2048;
+
   void take(std::string_view line);
   void leave(const std::string& device);
   void write(const std::string& line);
@@ -40,7 +44,8 @@ class LineNetwork final : public Network {
   lines::HostPort at_;
   Above& above_;
   lines::ByteStream stream_;
-  std::string input_;
+  run::LineSplitter input_{kLineMax};
+  run::Refusals refusals_;
   std::set<std::string> devices_;
   lines::SteadyTime next_try_{};
   bool said_ = false;

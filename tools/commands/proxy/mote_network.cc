@@ -6,6 +6,7 @@
 #include <charconv>
 #include <chrono>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "codec/generated/rubicon/serial_joined.h"
 #include "conformance/machine/messages.h"
@@ -15,6 +16,8 @@ namespace rubric::proxy {
 namespace {
 
 constexpr int kTriesMax = 4;
+constexpr std::uint16_t kSinkId = 1;
+constexpr std::size_t kMotesMax = 1024;  // Anybody may send as any mote.
 constexpr std::uint32_t kShortestMs = 20;
 constexpr std::uint32_t kLongestMs = 65'535;  // The field has 16 bits.
 
@@ -31,59 +34,110 @@ std::uint16_t mote_of(const std::string& device) {
 
 }  // namespace
 
+std::string MoteNetwork::device_of(std::uint16_t mote) const {
+  return fmt::format("{}:{}", island_, mote);
+}
+
+bool MoteNetwork::is_there(std::uint16_t mote) const {
+  const auto found = motes_.find(mote);
+  return found != motes_.end() && found->second.there;
+}
+
 void MoteNetwork::happened(const machine::Notice& notice, run::Caller& caller) {
   caller_ = &caller;
   if (const auto* message = std::get_if<machine::Received>(&notice)) received(*message);
-  if (const auto* left = std::get_if<machine::MoteLeft>(&notice)) {
-    const auto device = fmt::format("{}:{}", island_, left->address.devid);
-    if (motes_.erase(left->address.devid) > 0) above_.left(device);
-  }
+  if (const auto* left = std::get_if<machine::MoteLeft>(&notice)) missed(left->address.devid);
   const auto* ack = std::get_if<machine::AckReceived>(&notice);
   const auto found = ack ? awaited_.find(ack->seq_num) : awaited_.end();
   if (found == awaited_.end()) return;
   const Request request = found->second;
   awaited_.erase(found);
-  if (!ack->success && request.tries < kTriesMax && motes_.contains(request.mote)) send(request);
+  confirmed(request, ack->success);
+}
+
+void MoteNetwork::confirmed(const Request& request, bool success) {
+  const auto found = motes_.find(request.mote);
+  if (found == motes_.end() || !found->second.there) return;
+  Member& member = found->second;
+  if (success) {
+    if (request.samples) member.silenced = request.silences;
+    return;
+  }
+  if (request.tries < kTriesMax) {
+    send(request);
+  } else if (member.missed) {
+    leave(request.mote, member);
+  }
+}
+
+void MoteNetwork::missed(std::uint16_t mote) {
+  const auto found = motes_.find(mote);
+  if (found == motes_.end()) return;
+  found->second.missed = true;
+  // One that was told to be silent may well be there. If not, its next request fails.
+  if (!found->second.silenced) leave(mote, found->second);
+}
+
+// A mote that is alive does not join again, so its description is kept until it is heard again.
+void MoteNetwork::leave(std::uint16_t mote, Member& member) {
+  if (std::exchange(member.there, false)) above_.left(device_of(mote));
 }
 
 void MoteNetwork::received(const machine::Received& message) {
-  if (message.src.pid != island_) return;
-  const std::string device = fmt::format("{}:{}", island_, message.src.devid);
+  const std::uint16_t mote = message.src.devid;
+  if (message.src.pid != island_ || mote <= kSinkId || machine::is_reserved(mote)) return;
+  if (motes_.size() >= kMotesMax && !motes_.contains(mote)) return;
   const auto view = rubicon::SerialJoinedView::parse(message.data);
-  if (message.app_id == machine::component::kControlLayer && view &&
-      view->msg_type() == rubicon::AmType::kSerialJoined) {
-    if (static_cast<std::uint16_t>(view->mote_addr()) != message.src.devid) return;
-    space::Mote& mote = motes_[message.src.devid];
-    mote.descriptor = {static_cast<std::uint8_t>(view->mote_type()), view->actuators().raw(),
-                       view->transducers().raw()};
-    return above_.joined({device, set_of(run::transducer_names(mote.descriptor.transducers)),
-                          set_of(run::actuator_names(mote.descriptor.actuators))});
+  const bool joins = message.app_id == machine::component::kControlLayer && view &&
+                     view->msg_type() == rubicon::AmType::kSerialJoined;
+  if (joins && static_cast<std::uint16_t>(view->mote_addr()) != mote) return;
+  Member& member = motes_[mote];
+  member.missed = false;
+  bool news = !std::exchange(member.there, true) || joins;
+  std::string state;
+  if (joins) {
+    member.mote.descriptor = {static_cast<std::uint8_t>(view->mote_type()), view->actuators().raw(),
+                              view->transducers().raw()};
+    member.sensors = set_of(run::transducer_names(member.mote.descriptor.transducers));
+    member.described = true;
+    member.silenced = false;
+  } else {
+    state = space::state_data(member.mote, message.app_id, message.data);
   }
-  const auto known = motes_.find(message.src.devid);
-  if (known == motes_.end()) return;
-  const std::string state = space::state_data(known->second, message.app_id, message.data);
-  if (!state.empty()) above_.read(device, state);
+  if (!member.described && !state.empty()) {
+    const std::set<std::string> known = set_of(run::transducer_names(0xFFFF));
+    const auto readings = nlohmann::json::parse(state);
+    for (const auto& [sensor, reading] : readings.items()) {
+      if (known.contains(sensor)) news |= member.sensors.insert(sensor).second;
+    }
+  }
+  if (news) {
+    above_.joined({device_of(mote), member.sensors,
+                   set_of(run::actuator_names(member.mote.descriptor.actuators))});
+  }
+  if (!state.empty()) above_.read(device_of(mote), state);
 }
 
 void MoteNetwork::sample(const std::string& device, const Sampling& wanted) {
   const std::uint32_t period =
       wanted.period_ms == 0 ? 0 : std::clamp(wanted.period_ms, kShortestMs, kLongestMs);
   const nlohmann::json wish = {{"sampling_ms", period}, {"transducers", wanted.sensors}};
-  const Request request{mote_of(device), wish.dump(), true, 0};
+  const Request request{mote_of(device), wish.dump(), true, period == 0, 0};
+  if (period != 0) motes_[request.mote].silenced = false;
   unsent_.erase(request.mote);
   if (!send(request).empty()) unsent_[request.mote] = request;
 }
 
 lines::SteadyTime MoteNetwork::run() {
   std::erase_if(unsent_, [this](const auto& one) {
-    return !motes_.contains(one.first) || send(one.second).empty();
+    return !is_there(one.first) || send(one.second).empty();
   });
   constexpr lines::Milliseconds kAgain{50};
   return unsent_.empty() ? lines::SteadyTime::max() : std::chrono::steady_clock::now() + kAgain;
 }
 
 std::string MoteNetwork::command(const std::string& device, const std::string& text) {
-  return send({mote_of(device), nlohmann::json{{"command", text}}.dump(), false, 0});
+  return send({mote_of(device), nlohmann::json{{"command", text}}.dump(), false, false, 0});
 }
 
 std::string MoteNetwork::send(const Request& request) {
@@ -102,7 +156,8 @@ std::string MoteNetwork::send(const Request& request) {
   const auto result = caller_->call(send);
   const std::uint16_t number = std::get<machine::SendResult>(*result).seq_num;
   if (number == machine::kNoSeq) return "the outgoing buffer is full";
-  awaited_[number] = {request.mote, request.wish, request.samples, request.tries + 1};
+  Request& awaited = awaited_[number] = request;
+  ++awaited.tries;
   return {};
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 
 #include "tools/commands/proxy/network.h"
@@ -27,16 +28,30 @@ class MoteNetwork final : public Network {
     std::uint16_t mote = 0;
     std::string wish;
     bool samples = false;
+    bool silences = false;  // Asks for no readings.
     int tries = 0;
   };
+  struct Member {
+    space::Mote mote;
+    bool described = false;         // It has joined since the proxy began.
+    std::set<std::string> sensors;  // Of its description; else those that it was heard to read.
+    bool there = false;             // As the clients know.
+    bool silenced = false;          // It has confirmed that it is to send nothing.
+    bool missed = false;            // Nothing was heard of it for the stated time.
+  };
+  std::string device_of(std::uint16_t mote) const;
+  bool is_there(std::uint16_t mote) const;
+  void missed(std::uint16_t mote);
+  void leave(std::uint16_t mote, Member& member);
   void received(const machine::Received& message);
+  void confirmed(const Request& request, bool success);
   /// Sends what a wish of the tuple space means. Returns why not; empty if it was sent.
   std::string send(const Request& request);
 
   std::uint16_t island_;
   Above& above_;
   run::Caller* caller_ = nullptr;  // Within happened(), and from then on.
-  std::map<std::uint16_t, space::Mote> motes_;
+  std::map<std::uint16_t, Member> motes_;
   std::map<std::uint16_t, Request> awaited_;  // By sequence number.
   std::map<std::uint16_t, Request> unsent_;   // By mote: the buffer was full.
 };

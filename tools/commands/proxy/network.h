@@ -10,6 +10,9 @@
 
 namespace rubric::proxy {
 
+/// Of a stream in a step: others want to run, too, and Ctrl-C to be seen.
+constexpr int kReadsMax = 64;
+
 /// A device as the network describes it.
 struct Device {
   std::string id;  ///< Unique over all networks: 11:5, 1/1/7.

@@ -98,7 +98,9 @@ lines::SteadyTime Proxy::run(run::Caller&) {
     if (watched_ >= 0) watch(watched_);
   }
   accept();
-  for (const auto& client : clients_) read(*client);
+  for (const auto& client : clients_) {
+    if (read(*client)) until = steady_clock::now();
+  }
   for (const auto& client : clients_) {
     if (client->stream.is_open()) continue;
     const auto wants = std::exchange(client->wants, {});
@@ -121,11 +123,15 @@ void Proxy::accept() {
   for (const auto& [id, known] : devices_) put(client, line_of(known));
 }
 
-void Proxy::read(Client& client) {
+bool Proxy::read(Client& client) {
+  bool more = false;
   try {
     std::uint8_t room[1024];
-    while (const std::size_t size =
-               client.stream.read(MutableBytes(room, sizeof room), steady_clock::now())) {
+    for (int reads = 0; reads < kReadsMax; ++reads) {
+      const std::size_t size =
+          client.stream.read(MutableBytes(room, sizeof room), steady_clock::now());
+      more = size > 0;
+      if (!more) break;
       client.input.append(reinterpret_cast<const char*>(room), size);
       std::size_t begin = 0;
       for (std::size_t end = 0; (end = client.input.find('\n', begin)) != std::string::npos;
@@ -139,6 +145,7 @@ void Proxy::read(Client& client) {
   } catch (const lines::Broken&) {
     client.stream.close();
   }
+  return more && client.stream.is_open();
 }
 
 void Proxy::take(Client& client, const std::string& line) {

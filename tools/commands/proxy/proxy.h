@@ -54,7 +54,8 @@ class Proxy final : public run::Application, private Above {
   void left(const std::string& device) override;
 
   void accept();
-  void read(Client& client);
+  /// Returns whether there may be more to read.
+  bool read(Client& client);
   void take(Client& client, const std::string& line);
   void put(Client& client, std::string line);
   void put_all(const std::string& line);

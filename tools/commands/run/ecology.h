@@ -31,6 +31,9 @@ struct Ecology {
   std::uint32_t loss_percent = 0;
   std::uint64_t seed = 1;
   std::string space;  ///< An mqtt:// URL; empty: in memory.
+  // Given beside the file.
+  std::uint32_t gone_after_s = 0;  ///< As of a station.
+  bool home_assistant = false;     ///< Whether motes are announced to it, in a space at a broker.
   std::vector<EcologyIsland> islands;
 };
 

@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <deque>
+#include <exception>
 #include <map>
 #include <memory>
 #include <thread>
@@ -42,6 +45,7 @@ class Plan {
   StationSetup sink(const EcologyIsland& island) {
     StationSetup setup = on_air(island, node::Role::kSink, node::kSinkId);
     setup.offered = island.serial.empty() ? "sf-server:0" : island.serial;
+    setup.gone_after_s = ecology_.gone_after_s;
     return setup;
   }
   StationSetup base_station(const EcologyIsland& island) {
@@ -50,6 +54,7 @@ class Plan {
     setup.name = name_of(setup.role, island.island, setup.id);
     setup.island = island.island;
     setup.seed = next_seed();
+    setup.gone_after_s = ecology_.gone_after_s;
     setup.keeps = false;  // Its sink keeps the line's frames.
     return setup;
   }
@@ -100,15 +105,27 @@ class Islands {
       threads.emplace_back([this, station = inhabitant->station.get()] { run(*station); });
     }
     for (std::thread& thread : threads) thread.join();
-    for (const auto& inhabitant : inhabitants_) {
-      if (inhabitant->child) inhabitant->child->end(kApplicationEnds);
-    }
+    end_applications();
+    events_->finish(std::chrono::steady_clock::now() + kLastWords);
     // Motes first, then what they talk to.
     while (!inhabitants_.empty()) inhabitants_.pop_back();
     if (!fault_.empty()) throw lines::Broken(fault_);
   }
 
  private:
+  // All of them have the same time.
+  void end_applications() {
+    for (const auto& inhabitant : inhabitants_) {
+      if (inhabitant->child) inhabitant->child->close_input();
+    }
+    const auto deadline = std::chrono::steady_clock::now() + kApplicationEnds;
+    for (const auto& inhabitant : inhabitants_) {
+      const auto left =
+          std::chrono::ceil<lines::Milliseconds>(deadline - std::chrono::steady_clock::now());
+      if (inhabitant->child) inhabitant->child->end(std::max(left, lines::Milliseconds(0)));
+    }
+  }
+
   void settle(const EcologyIsland& island, Plan& plan) {
     Inhabitant& sink = add(plan.sink(island), island.sink_app, nullptr);
     const std::uint16_t air = sink.station->air_port();
@@ -134,7 +151,7 @@ class Islands {
     const std::string name = setup.name;
     one.station = std::make_unique<Station>(std::move(setup), keeper_);
     one.applications.push_back(
-        std::make_unique<JsonApplication>(JsonApplication::Ends{-1, events_, name}));
+        std::make_unique<JsonApplication>(JsonApplication::Ends{-1, events_, name, true}));
     if (!app.empty() && app != "demo") {
       one.child = targets::Process::run(app, targets::Process::Stderr::kOurs);
       auto calls = std::make_shared<LineOutput>(one.child->in_fd(), "the application of " + name);
@@ -156,19 +173,21 @@ class Islands {
     } else {
       space = space::open_mqtt(ecology_.space, credentials_, island);
     }
-    return std::make_unique<space::Gateway>(space::Gateway::Settings{island, {}}, std::move(space));
+    space::Gateway::Settings settings{island, std::chrono::seconds(ecology_.gone_after_s)};
+    if (ecology_.home_assistant) settings.home_assistant = space::parse_mqtt(ecology_.space).root;
+    return std::make_unique<space::Gateway>(settings, std::move(space));
   }
 
   void run(Station& station) {
     try {
       station.run(lines::stop_requested);
-    } catch (const lines::Broken& broken) {
+    } catch (const std::exception& broken) {
       const std::lock_guard lock(mutex_);
       fault_ = fmt::format("{}: {}", station.setup().name, broken.what());
       lines::request_stop();
     }
     if (lines::stop_requested()) return;
-    text::print(stderr, "rubric: the application of {} has ended, so it has\n",
+    text::print(stderr, "rubric: the application of {} has ended, and the node with it\n",
                 station.setup().name);
     if (++ended_ == inhabitants_.size()) lines::request_stop();
   }

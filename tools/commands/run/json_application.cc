@@ -225,8 +225,7 @@ lines::SteadyTime JsonApplication::run(Caller& caller) {
 }
 
 void JsonApplication::stop(Caller&) {
-  constexpr lines::Milliseconds kLastWords{1000};
-  ends_.out->finish(std::chrono::steady_clock::now() + kLastWords);
+  if (!ends_.shared) ends_.out->finish(std::chrono::steady_clock::now() + kLastWords);
 }
 
 void JsonApplication::read(Caller& caller) {
@@ -234,16 +233,17 @@ void JsonApplication::read(Caller& caller) {
   const ssize_t size = ::read(ends_.in, room, sizeof room);
   if (size <= 0) {
     ended_ = size == 0 || (errno != EINTR && errno != EAGAIN);
+    const std::string last = ended_ ? input_.rest() : "";
+    if (!last.empty()) call(last, caller);
     return;
   }
-  input_.append(room, static_cast<std::size_t>(size));
-  std::size_t begin = 0;
-  for (std::size_t end = 0; (end = input_.find('\n', begin)) != input_.npos; begin = end + 1) {
-    call(input_.substr(begin, end - begin), caller);
-  }
-  input_.erase(0, begin);
-  constexpr std::size_t kLineMax = 65'536;
-  if (input_.size() > kLineMax) input_.clear();
+  input_.add(
+      {room, static_cast<std::size_t>(size)}, [&](const std::string& line) { call(line, caller); },
+      [&] { print_error(fmt::format("a line of more than {} bytes", kLineMax)); });
+}
+
+void JsonApplication::print_error(const std::string& text) {
+  print(line_of({{"event", "error"}, {"text", text}}, ends_.node));
 }
 
 void JsonApplication::call(const std::string& line, Caller& caller) {
@@ -255,9 +255,9 @@ void JsonApplication::call(const std::string& line, Caller& caller) {
     const auto answer = caller.call(call_of(with.text("call"), with, data));
     if (answer) print(json_line(*answer, ends_.node));
   } catch (const std::invalid_argument& error) {
-    print(line_of({{"event", "error"}, {"text", error.what()}}, ends_.node));
+    print_error(error.what());
   } catch (const Json::exception& error) {
-    print(line_of({{"event", "error"}, {"text", error.what()}}, ends_.node));
+    print_error(error.what());
   }
 }
 

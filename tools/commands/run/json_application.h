@@ -6,6 +6,7 @@
 
 #include "tools/commands/run/application.h"
 #include "tools/commands/run/line_output.h"
+#include "tools/commands/run/line_splitter.h"
 
 namespace rubric::run {
 
@@ -22,8 +23,10 @@ class JsonApplication final : public Application {
     int in = -1;  ///< -1: no calls come. Its end ends the node.
     std::shared_ptr<LineOutput> out;
     std::string node;  ///< Written with each event; empty: it is not.
+    /// Others write to `out`, too, so that this application does not finish it.
+    bool shared = false;
   };
-  explicit JsonApplication(Ends ends) : ends_(std::move(ends)) {}
+  explicit JsonApplication(Ends ends) : ends_(std::move(ends)), input_(kLineMax) {}
 
   void happened(const machine::Notice& notice, Caller& caller) override;
   lines::SteadyTime run(Caller& caller) override;
@@ -32,12 +35,15 @@ class JsonApplication final : public Application {
   void stop(Caller& caller) override;
 
  private:
+  static constexpr std::size_t kLineMax = 65'536;
+
   void read(Caller& caller);
   void call(const std::string& line, Caller& caller);
+  void print_error(const std::string& text);
   void print(const std::string& line) { ends_.out->put(line + '\n'); }
 
   Ends ends_;
-  std::string input_;  // Not yet a whole line.
+  LineSplitter input_;
   bool ended_ = false;
 };
 

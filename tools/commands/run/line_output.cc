@@ -41,7 +41,9 @@ void LineOutput::put(std::string_view line) {
   const std::lock_guard lock(mutex_);
   if (closed_) return;
   if (waiting_.size() + line.size() > kWaitingMax) {
-    if (lost_++ == 0) text::print(stderr, "rubric: {}: events are lost, nobody reads\n", name_);
+    if (lost_++ == 0) {
+      text::print(stderr, "rubric: {}: its reader is too slow: events are lost\n", name_);
+    }
     return;
   }
   waiting_ += line;

@@ -10,6 +10,9 @@
 
 namespace rubric::run {
 
+/// What a reader has at the end of a node to take what waits.
+constexpr lines::Milliseconds kLastWords{1000};
+
 /// What its reader has not taken waits here, so that it holds no node up: a node that waits breaks
 /// the rules of time. Several threads may write; each line stays whole.
 class LineOutput {

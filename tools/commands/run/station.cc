@@ -22,7 +22,20 @@ using std::chrono::milliseconds;
 using std::chrono::steady_clock;
 
 constexpr milliseconds kMoment{5};     // Between looks at a tuple space.
+constexpr int kPacketsMax = 64;        // Of a serial line, in a step: others want to run, too.
 constexpr milliseconds kLongest{100};  // Until a stop is seen.
+
+// A call into the layer, also where it ends by an exception.
+class Depth {
+ public:
+  explicit Depth(int& depth) : depth_(depth) { ++depth_; }
+  Depth(const Depth&) = delete;
+  Depth& operator=(const Depth&) = delete;
+  ~Depth() { --depth_; }
+
+ private:
+  int& depth_;
+};
 
 node::Ticks gone_after(const StationSetup& setup) { return setup.gone_after_s * 1024; }
 
@@ -121,9 +134,11 @@ lines::SteadyTime Station::catch_up() {
   const lines::SteadyTime latest = steady_clock::now() + kLongest;
   if (depth_ > 0) return latest;
   const node::Ticks now = ticks();
-  ++depth_;
-  const std::optional<node::Ticks> due = layer_->run(now);
-  --depth_;
+  std::optional<node::Ticks> due;
+  {
+    const Depth depth(depth_);
+    due = layer_->run(now);
+  }
   if (!due) return latest;
   const std::int64_t left_ticks = static_cast<std::int32_t>(*due - now);
   const milliseconds left(std::max<std::int64_t>(0, left_ticks) * 1000 / 1024 + 1);
@@ -133,9 +148,8 @@ lines::SteadyTime Station::catch_up() {
 void Station::heard(Line line, Bytes packet) {
   catch_up();
   keeper_.given(names_, machine::Heard{frame_of(line, packet)});
-  ++depth_;
+  const Depth depth(depth_);
   layer_->received(line, packet);
-  --depth_;
 }
 
 void Station::transmit(Line line, Bytes packet, bool link_ack) {
@@ -156,9 +170,11 @@ void Station::transmit(Line line, Bytes packet, bool link_ack) {
 std::optional<machine::Notice> Station::call(const machine::Call& call) {
   catch_up();
   keeper_.given(names_, machine::Called{call});
-  ++depth_;
-  const std::optional<machine::Notice> result = layer_->call(call);
-  --depth_;
+  std::optional<machine::Notice> result;
+  {
+    const Depth depth(depth_);
+    result = layer_->call(call);
+  }
   if (result) keeper_.did(names_, *result);
   catch_up();
   return result;
@@ -193,6 +209,7 @@ bool Station::has_ended() const {
 
 void Station::step() {
   lines::SteadyTime until = catch_up();
+  if (serial_waits_) until = steady_clock::now();
   int calls = -1;
   for (run::Application* application : applications_) {
     until = std::min(until, application->run(*this));
@@ -214,18 +231,21 @@ void Station::step() {
     pollfd inputs[] = {{calls, POLLIN, 0}, {serial, POLLIN, 0}};
     ::poll(inputs, 2, static_cast<int>(std::max<std::int64_t>(0, left)));
   }
-  hear_serial();
+  serial_waits_ = hear_serial();
   keeper_.settle();
 }
 
-void Station::hear_serial() {
-  while (serial_ && serial_->is_open()) {
+// Hears some packets; returns whether there may be more.
+bool Station::hear_serial() {
+  for (int count = 0; count < kPacketsMax; ++count) {
+    if (!serial_ || !serial_->is_open()) return false;
     const std::vector<std::uint8_t> packet = serial_->receive(steady_clock::now());
-    if (packet.empty()) return;
+    if (packet.empty()) return false;
     keep_serial(packet, is_sink());
     heard(Line::kSerial, Bytes(packet.data(), packet.size()));
     look_at_island();
   }
+  return true;
 }
 
 // Says that the host at a sink's serial line has another island in mind.

@@ -88,7 +88,7 @@ class Station final : private LayerUser, public Caller {
   lines::SteadyTime catch_up();
   void heard(node::Line line, Bytes packet);
   void step();
-  void hear_serial();
+  bool hear_serial();
   void look_at_island();
   bool has_ended() const;
 
@@ -102,7 +102,8 @@ class Station final : private LayerUser, public Caller {
   std::optional<VirtualRadio> radio_;
   std::optional<SerialEnd> serial_;
   bool awaits_link_ack_ = false;
-  int depth_ = 0;  // Of calls into the layer: a callback may call.
+  bool serial_waits_ = false;  // There may be more to read.
+  int depth_ = 0;              // Of calls into the layer: a callback may call.
   bool warned_ = false;
   std::uint16_t island_ = 0;
 };

@@ -19,7 +19,6 @@ namespace {
 
 using std::chrono::steady_clock;
 
-constexpr std::chrono::seconds kSayEvery{1};  // Of refusals.
 constexpr std::chrono::seconds kSayOtherEvery{10};
 constexpr std::size_t kMembersMax = 1024;  // A broker may offer any number.
 constexpr std::size_t kArrivedMax = 1024;
@@ -44,7 +43,6 @@ void Gateway::start(run::Caller&) {
 }
 
 void Gateway::stop(run::Caller&) {
-  say_rest();
   space_->put(island_availability_key(settings_.island), availability_data(false),
               Space::Stay::kTuple);
 }
@@ -134,8 +132,8 @@ void Gateway::set_online(std::uint16_t id, Member& member, bool online) {
 
 lines::SteadyTime Gateway::run(run::Caller& caller) {
   for (const Tuple& tuple : space_->take()) take(tuple, caller);
+  refusals_.say_rest();
   const auto now = steady_clock::now();
-  if (now - said_ >= kSayEvery) say_rest();
   if (settings_.gone_after.count() == 0) return lines::SteadyTime::max();
   for (auto& [id, member] : members_) {
     if (member.awaited && now - *member.awaited >= settings_.gone_after) {
@@ -200,18 +198,7 @@ void Gateway::take_wish(const Tuple& tuple, std::uint16_t mote, run::Caller& cal
 }
 
 void Gateway::refuse(const std::string& key, const std::string& why) {
-  const auto now = steady_clock::now();
-  if (now - said_ < kSayEvery) {
-    ++unsaid_;
-    return;
-  }
-  said_ = now;
-  text::print(stderr, "rubric: space: refused {}: {}\n", printable(key), printable(why));
-}
-
-void Gateway::say_rest() {
-  if (unsaid_ == 0) return;
-  text::print(stderr, "rubric: space: refused {} more\n", std::exchange(unsaid_, 0));
+  refusals_.say(fmt::format("{}: {}", printable(key), printable(why)));
 }
 
 void Gateway::send(Bytes packet) {

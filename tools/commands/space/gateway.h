@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "tools/commands/run/application.h"
+#include "tools/commands/run/refusals.h"
 #include "tools/commands/run/station.h"
 #include "tools/commands/space/layout.h"
 #include "tools/commands/space/space.h"
@@ -62,7 +63,6 @@ class Gateway final : public run::Application, public run::Peers {
     space_->put(events_key(settings_.island), data, Space::Stay::kEvent);
   }
   void refuse(const std::string& key, const std::string& why);
-  void say_rest();
 
   Settings settings_;
   std::unique_ptr<Space> space_;
@@ -71,8 +71,7 @@ class Gateway final : public run::Application, public run::Peers {
   std::deque<std::vector<std::uint8_t>> arrived_;  // From other base stations.
   std::set<std::int64_t> wrote_online_;            // By when.
   lines::SteadyTime said_other_{};
-  lines::SteadyTime said_{};
-  int unsaid_ = 0;
+  run::Refusals refusals_{"space"};
 };
 
 }  // namespace rubric::space
