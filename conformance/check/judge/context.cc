@@ -250,7 +250,7 @@ bool Context::crowded(std::uint16_t node, std::int64_t time_us) const {
   constexpr std::size_t kCrowd = 2;
   constexpr std::int64_t kAroundUs = 100'000;
   const Device& its = device(node);
-  // What came within the response time before may still wait.
+  // A message that came at most the response time before may still be in a buffer.
   const auto from =
       std::ranges::upper_bound(run.seen, time_us - std::max(kAroundUs, response_us()), {},
                                [](const Observation& seen) { return seen.place.time_us; });

@@ -105,7 +105,8 @@ void Forwarding::judge_order(Line& line, const Passing& passing, const Observati
   const bool up = seen.frame.link == Link::kSerial;
   Line::Last& last = up ? line.last_up : line.last_down;
   const bool log = context_.device(line.sink).hearing;
-  // Frames that overlap on the air have no order; which of two alike was passed on, nobody knows.
+  // Frames that overlap on the air have no order. Of two messages that are alike nobody knows which
+  // one was passed on.
   const bool unclear = passing.twin || (up && !log && passing.whole_us > last.begun_us);
   if (passing.order > last.order && !passing.twin) last = {passing.order, passing.place.time_us};
   if (passing.order < last.order && !unclear) {
@@ -301,7 +302,7 @@ bool Forwarding::sent_on_radio(std::uint16_t sink, const Observation& seen, cons
     refuse_down(*line, seen, net);
     return true;
   }
-  // Only a run that has everything, in its order, shows that nobody gave the sink this message.
+  // Only a complete run, in its order, shows that nobody gave the sink this message.
   const std::int64_t now = seen.place.time_us;
   const bool sure = !context_.run.order_guessed &&
                     context_.without_ever(kNobody, now) == Severity::kFail &&
@@ -312,7 +313,7 @@ bool Forwarding::sent_on_radio(std::uint16_t sink, const Observation& seen, cons
     context_.needs_host(sink, seen.place);
     return true;
   }
-  // Sinks have one address, and it may be another's own.
+  // All sinks have one AM address, so this may be the own message of another one.
   const bool anothers = std::ranges::any_of(lines_, [&](const Line& other) {
     return other.sink != sink && net.src == machine::Address{other.island, other.am};
   });

@@ -131,7 +131,8 @@ void MoteJoins::refuse_request(std::uint16_t mote, const Observation& seen,
   const bool same = request.seq_num == h.join.seq_num;
   Said said;
   ReqId rule = "J8-PERIOD"_rule;
-  // Another number could be the call after a reboot that nobody saw; a whole log has reboots.
+  // Another number may come from a call after a reboot that was not captured. A whole log shows
+  // reboots.
   const bool sure = same || context_.device(mote).whole;
   Severity severity = sure ? Severity::kFail : Severity::kInconclusive;
   const std::int64_t period = context_.join_period_us();

@@ -2,7 +2,6 @@
 
 #include "conformance/check/judge/peis_watch.h"
 #include "conformance/machine/route.h"
-#include "conformance/machine/transport.h"
 
 namespace rubric::check {
 namespace {
@@ -69,7 +68,8 @@ void Originals::used(std::uint16_t node, std::uint16_t number) {
 }
 
 void Originals::interrupted(std::uint16_t node) {
-  const bool whole = context_.device(node).whole;  // What was accepted waits until it is on again.
+  // By a whole log what send accepted waits until the interface is on again.
+  const bool whole = context_.device(node).whole;
   for (std::size_t i = 0; i < calls_[node].size(); ++i) {
     (whole ? calls_[node].newest(i).held : calls_[node].newest(i).free) = true;
   }

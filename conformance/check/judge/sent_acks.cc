@@ -1,4 +1,4 @@
-// The acks of messages that nodes sent, and what their applications are told of them.
+// Judges receive_ack, the event that tells an application of an ack or of its timeout.
 #include "conformance/check/judge/peis_watch.h"
 #include "conformance/check/judge/sent.h"
 #include "conformance/machine/transport.h"

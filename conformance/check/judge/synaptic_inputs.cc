@@ -1,4 +1,4 @@
-// Input channels: the data that come for them, and what applications are told.
+// Judges input channels: the data that come for them, and synData_received.
 #include <algorithm>
 
 #include "conformance/check/judge/synaptic_watch.h"
