@@ -13,7 +13,8 @@
 // kTurnedMax stamps go back at all):
 // - If the stamps go on before it as if the one before had never been, that one alone may be wrong;
 //   if those after it do, this one may be. A stamp is wrong alone if its neighbours are closer to
-//   each other than half of what it is off; it then lies between them.
+//   each other than a hundredth of what it is off, since a step that makes up for two gaps so
+//   nearly would be chance; it then lies between them.
 // - Else the clock stepped back, and how much time passed is unknown. Where either could be true,
 //   it stepped twice.
 // - Forth, in a file of kManyFrames: an acknowledgement of the link that comes kLateAckUs after its

@@ -87,6 +87,7 @@ TEST(Legal, NoAlarmComesBack) {
       {"host_loops_radiated", 975, "exact"},      // The other sink's own message.
       {"ack_join_often", 12, "drops_and_steps"},  // A step between repeats; the reply was dropped.
       {"stated_slow", 13, "steps_forth"},         // A step among reactions that all are slow.
+      {"stated_slow_join_timer", 364, "steps_back"},  // A step as long as the silence before it.
       {"foreign_mote_to_sink", 46, "steps_forth"},  // A step before an ack to another island.
       {"mixed", 372, "drops"},                      // A lossy line, shown by an ack without packet.
       {"mixed", 584, "steps_often"},                // A step after a damaged frame.
