@@ -24,6 +24,7 @@ void Acks::arrived(std::uint16_t node, const Observation& seen, std::uint16_t se
   arrived.place = seen.place;
   arrived.whole_us = seen.place.time_us + air_us(seen);
   arrived.sender = sender;
+  arrived.link = seen.frame.link;
   arrived.forbidden = net.sound ? arrival.forbidden : "N11-NBYTES"_rule;
   arrived.weak = net.sound && arrival.weak;
   arrived.ackable = arrived.forbidden == ReqId::kNone &&
@@ -122,10 +123,35 @@ void Acks::sent(std::uint16_t node, const Observation& seen, const Net& ack) {
   if (best->sure && best->copies == 1) {
     context_.left(node, seen.frame.link, seen.place, best->whole_us,
                   best->whole_us + context_.response_us(), "the ack of " + name_of(best->net));
+    judge_ack_order(node, seen, *best);
   }
   context_.findings.kept("T2-ACK"_rule);
   context_.findings.kept("T2-ONCE"_rule);
   context_.findings.kept("T2-CONTENT"_rule);
+}
+
+// Judges whether an ack of what came later by the same line left before this one by a log.
+void Acks::judge_ack_order(std::uint16_t node, const Observation& seen, const Arrived& acked) {
+  const std::int64_t now = seen.place.time_us;
+  if (!acked.must_ack || !context_.device(node).hearing) return;
+  // Of what holds a node up only a busy application mixes what it handles; no node has this line.
+  constexpr machine::Link kNone = machine::Link::kPeis;
+  if (context_.busy(node, acked.whole_us, now, kNone)) return;
+  if (context_.crowded(node, acked.place.time_us)) return;
+  Ring<Arrived, kRoom>& ring = arrived_[node];
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const Arrived& other = ring.newest(i);
+    const bool same_way = other.link == acked.link && machine::is_reserved(other.net.src.devid) ==
+                                                          machine::is_reserved(acked.net.src.devid);
+    if (other.acks == 0 || other.order <= acked.order || !other.sure || !same_way) continue;
+    if (other.copies > 1 || other.net.src.pid != acked.net.src.pid) continue;
+    context_.report("N2-ORDER"_rule, Severity::kFail, seen.place, node,
+                    {"The ack of " + name_of(acked.net) + " leaves after that of " +
+                         name_of(other.net) + ", which came later by the same line.",
+                     "The order in which they came.",
+                     {}});
+    return;
+  }
 }
 
 void Acks::refuse(std::uint16_t node, const Observation& seen, const Net& ack, std::int32_t acked,

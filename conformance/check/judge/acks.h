@@ -16,7 +16,8 @@
 // Tolerance: an ack is due within the response time (decision 125) after the message's end; one
 // after the sender's timeout is weak. A repetition by the link is one reception or two, so one ack
 // or two are right (decision 111). A node may ack a message that it is free to ignore, and must if
-// it delivers it.
+// it delivers it. Of what came by one line the acks that go by one line keep the order (decision
+// 125), unless the application was busy or the buffers were full.
 //
 // Cannot know: whether a message arrived that nothing proves to have arrived; whether an ack
 // escaped the sniffer; which of two messages with one source and number an ack means; whether a
@@ -46,9 +47,10 @@ namespace rubric::check {
 struct Arrived {
   Net net;
   Place place;
-  std::int64_t whole_us = -1;      ///< When the receiver has it whole.
-  std::uint16_t sender = kNobody;  ///< The node that sent it on its last hop.
-  ReqId forbidden = ReqId::kNone;  ///< Acking or delivering it breaks this rule.
+  std::int64_t whole_us = -1;                  ///< When the receiver has it whole.
+  std::uint16_t sender = kNobody;              ///< The node that sent it on its last hop.
+  machine::Link link = machine::Link::kRadio;  ///< By which it came.
+  ReqId forbidden = ReqId::kNone;              ///< Acking or delivering it breaks this rule.
   bool weak = false;
   bool must_ack = false;
   bool ackable = false;   ///< Apart from `free`: reliable, and so on.
@@ -106,6 +108,7 @@ class Acks {
   std::int64_t queued_us(std::uint16_t node, const Arrived& arrived);
   bool delivered_before(std::uint16_t node, const Arrived& arrived);
   void judge_order(std::uint16_t node, const Observation& seen, const Arrived& arrived);
+  void judge_ack_order(std::uint16_t node, const Observation& seen, const Arrived& acked);
   void refuse(std::uint16_t node, const Observation& seen, const Net& ack, std::int32_t acked,
               Arrived* best);
 
