@@ -1,5 +1,5 @@
-#include "conformance/check/judge/align_judge.h"
-
+// judge(), as observation.h declares it. A run whose files are in order only as far as their common
+// frames tell, or a recorder's clock of which stepped, is judged in more than one way.
 #include <algorithm>
 #include <limits>
 #include <map>
@@ -12,6 +12,7 @@
 #include "codec/reflect/requirements.h"
 #include "conformance/check/input/read.h"
 #include "conformance/check/judge/findings.h"
+#include "conformance/check/judge/judge.h"
 #include "conformance/check/judge/judge_pass.h"
 
 namespace rubric::check {
@@ -95,8 +96,11 @@ Report judge_with(const Run& run, const Options& options, When when) {
   return judge(now, options);
 }
 
-}  // namespace
-
+// Judges `run` with the frames of Run::loose at their likely times, as early and as late as they
+// can be, and without them, and with the lines of Run::slack_taps where they are, later by half of
+// the slack, and by all of it. A failure or a weak finding remains if each of these orders has it;
+// else it becomes inconclusive. Before the first common frame and after the last one it must be
+// found without the loose files too, since their beginning and end are unknown.
 Report judge_each_order(const Run& run, const Options& options) {
   Report report = judge_with(run, options, When::kLikely);
   if (std::none_of(report.findings.begin(), report.findings.end(), blames)) return report;
@@ -121,8 +125,6 @@ Report judge_each_order(const Run& run, const Options& options) {
   report.verdict = verdict_of(report.findings);
   return report;
 }
-
-namespace {
 
 constexpr std::int64_t kMuchLaterUs = 7'200'000'000;
 
@@ -153,8 +155,8 @@ Run with_late_steps(const Run& run) {
   return out;
 }
 
-}  // namespace
-
+// Judges `run`, a recorder's clock of which stepped, as if the frames after each step had come at
+// once, and as if they had come much later. What only one of the two has is inconclusive.
 Report judge_each_gap(const Run& run, const Options& options) {
   Report report = Judge(run, options).judge();
   Report late = Judge(with_late_steps(run), options).judge();
@@ -194,6 +196,18 @@ Report judge_each_gap(const Run& run, const Options& options) {
                    });
   report.verdict = verdict_of(report.findings);
   return report;
+}
+
+}  // namespace
+
+Report judge(const Run& run, const Options& options) {
+  if (run.tells_all() && !(options.start_cold && options.sniffer_complete)) {
+    Options known = options;
+    known.start_cold = known.sniffer_complete = true;
+    return judge(run, known);
+  }
+  if (!run.loose.empty() || !run.slack_taps.empty()) return judge_each_order(run, options);
+  return run.steps.empty() ? Judge(run, options).judge() : judge_each_gap(run, options);
 }
 
 }  // namespace rubric::check

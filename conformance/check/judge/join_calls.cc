@@ -29,7 +29,8 @@ void JoinCalls::begin_life(std::uint16_t mote) {
 }
 
 void JoinCalls::request(std::uint16_t mote, const Observation& seen, const Request& request) {
-  const Calls& calls = calls_[mote];
+  Calls& calls = calls_[mote];
+  calls.asks = false;
   const std::vector<MoteHypothesis>& set = std::as_const(motes_).set(mote);
   if (calls.logged && calls.open == 0 && set.size() == 1 && !set[0].unknown &&
       set[0].join.phase == Phase::kOutside) {
@@ -56,7 +57,7 @@ void JoinCalls::request(std::uint16_t mote, const Observation& seen, const Reque
 void JoinCalls::called(std::uint16_t mote, const Observation& seen,
                        const machine::JoinIsland& call) {
   Calls& calls = calls_[mote];
-  judge_over(mote, seen.place.time_us);
+  ends(mote, seen.place.time_us);
   // A member, and one whose earlier call is open, refuses at once.
   calls.refusable =
       calls.open > 0 || std::ranges::any_of(motes_.set(mote), [](const MoteHypothesis& h) {
@@ -65,6 +66,30 @@ void JoinCalls::called(std::uint16_t mote, const Observation& seen,
   ++calls.open;
   calls.last = call;
   calls.called = seen.place;
+  calls.asks = context_.device(mote).whole && !calls.refusable && !calls.radio_off;
+}
+
+void JoinCalls::radio_set(std::uint16_t mote, bool on) {
+  calls_[mote].radio_off = !on;
+  calls_[mote].asks = false;
+}
+
+void JoinCalls::ends(std::uint16_t mote, std::int64_t end_us) {
+  judge_over(mote, end_us);
+  Calls& calls = calls_[mote];
+  if (!calls.asks || !context_.run.has_time) return;
+  const std::int64_t called_us = calls.called.time_us;
+  const std::int64_t due_us = context_.due_us(mote, called_us, machine::Link::kRadio);
+  if (end_us <= due_us) return;
+  calls.asks = false;
+  // A call may end before the channel is free again.
+  const std::int64_t runs_us = motes_.expiries_min() * context_.join_period_us();
+  if (due_us > called_us + context_.response_us() && due_us >= called_us + runs_us) return;
+  context_.report("J1-REQUEST"_rule, Severity::kFail, calls.called, mote,
+                  {"After the call of joinIsland the mote sent no join_request within " +
+                       ms_text(context_.response_us()) + ".",
+                   "A join_request, to the sinks' address.",
+                   {}});
 }
 
 void JoinCalls::told(std::uint16_t mote, const Observation& seen, const machine::Joined& joined) {
@@ -78,6 +103,7 @@ void JoinCalls::told(std::uint16_t mote, const Observation& seen, const machine:
                      "One joined event for each call.",
                      {}});
   }
+  if (!joined.success) ends(mote, now);
   if (calls.open > 0) --calls.open;
   const std::vector<MoteHypothesis> before = set;
   Said said;
@@ -200,6 +226,7 @@ void JoinCalls::finish(std::int64_t end_us) {
   for (std::size_t i = 0; i < calls_.size(); ++i) {
     const auto mote = static_cast<std::uint16_t>(i);
     const Device& device = context_.device(mote);
+    if (calls_[mote].asks) ends(mote, end_us);
     const std::vector<MoteHypothesis>& set = std::as_const(motes_).set(mote);
     const bool known = set.size() == 1 && !set[0].unknown;
     if (device.role != machine::Role::kMote || !device.application || !known) continue;

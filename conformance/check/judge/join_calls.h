@@ -21,6 +21,9 @@ class JoinCalls {
   void request(std::uint16_t mote, const Observation& seen, const Request& request);
   void called(std::uint16_t mote, const Observation& seen, const machine::JoinIsland& call);
   void told(std::uint16_t mote, const Observation& seen, const machine::Joined& joined);
+  void radio_set(std::uint16_t mote, bool on);
+  /// Judges what a log that is whole leaves open where it ends, or where the mote restarts.
+  void ends(std::uint16_t mote, std::int64_t end_us);
   void finish(std::int64_t end_us);
 
  private:
@@ -30,6 +33,8 @@ class JoinCalls {
     std::optional<machine::JoinIsland> last;
     bool refusable = true;  ///< That one may fail at once.
     Place called;
+    bool asks = false;       ///< That one owes a join_request.
+    bool radio_off = false;  ///< By its application.
   };
 
   void judge_member(std::uint16_t mote, const MoteHypothesis& h, std::int64_t end_us);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "conformance/check/judge/align_judge.h"
 #include "conformance/check/judge/judge_pass.h"
 #include "conformance/check/links.h"
 #include "conformance/machine/transport.h"
@@ -240,15 +239,17 @@ void Judge::called(const Observation& seen, std::uint16_t device) {
     return;
   }
   if (const auto* set = std::get_if<machine::SetInterface>(seen.call)) {
+    if (!set->on) acks_.interrupted(device, seen.place.time_us, who_.devices[device].whole);
+    if (!set->on) originals_.interrupted(device);
     if (set->link == machine::Link::kSerial) {
       forwarding_.serial_set(device, set->on);
       announcements_.serial_set(device, set->on, seen.place.time_us);
+    } else {
+      forwarding_.radio_set(device, set->on);
+      synaptic_.able(device, set->on, seen.place.time_us);
+      joins_.radio_set(device, set->on, seen.place.time_us);
+      join_calls_.radio_set(device, set->on);
     }
-    if (set->link == machine::Link::kRadio) forwarding_.radio_set(device, set->on);
-    if (!set->on) acks_.interrupted(device, seen.place.time_us, who_.devices[device].whole);
-    if (!set->on) originals_.interrupted(device);
-    if (set->link == machine::Link::kRadio) synaptic_.able(device, set->on, seen.place.time_us);
-    if (set->link == machine::Link::kRadio) joins_.radio_set(device, set->on, seen.place.time_us);
     return;
   }
   if (const auto* send = std::get_if<machine::Send>(seen.call)) {
@@ -313,16 +314,6 @@ machine::Address Judge::address_of(std::uint16_t node) const {
   }
   const bool alone = device.partner == kNobody;
   return {alone ? device.island : sinks_.island(device.partner), machine::kNullDevid};
-}
-
-Report judge(const Run& run, const Options& options) {
-  if (run.tells_all() && !(options.start_cold && options.sniffer_complete)) {
-    Options known = options;
-    known.start_cold = known.sniffer_complete = true;
-    return judge(run, known);
-  }
-  if (!run.loose.empty() || !run.slack_taps.empty()) return judge_each_order(run, options);
-  return run.steps.empty() ? Judge(run, options).judge() : judge_each_gap(run, options);
 }
 
 // Takes the link's own repetition, or a log's line that shows who received a frame.
