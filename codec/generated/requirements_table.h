@@ -430,10 +430,10 @@ constexpr reflect::Requirement kRequirements[] = {
      "decision 126",
      reflect::kRoleBaseStation, true, ""},
     {"N9-SET", "MUST", "network, island id",
-     "A config message SET_ISLAND_ID over serial sets the sink's island id; what the sink "
-     "does after it uses the new one.",
+     "A config message SET_ISLAND_ID over serial sets the sink's island id, and a base "
+     "station sends it when its own is set; what both do after it uses the new one.",
      "release 1.0 NetworkP",
-     reflect::kRoleSink, false, ""},
+     reflect::kRoleSink | reflect::kRoleBaseStation, false, ""},
     {"N9-OTHER", "MUST", "network, island id",
      "A config message of another type, or with a reserved island id, changes nothing.",
      "release 1.0 NetworkP; decision 132",

@@ -168,7 +168,9 @@ void Forwarding::sent_on_serial(std::uint16_t sink, const Observation& seen, con
     ++passing.passed;
     if (passing.owed) --line->owed_up;
     passing.owed = false;
-    if (net.sound && passing.net.sound && net.nbytes > passing.net.nbytes) {
+    if (!net.sound && passing.net.sound) {
+      report_nbytes(context_, line->sink, seen.place, net);
+    } else if (passing.net.sound && net.nbytes > passing.net.nbytes) {
       line->stale.add(seen.place, passing.net.nbytes, net.nbytes);
     }
     pass_up(*line, passing, seen);

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "conformance/check/judge/context.h"
-#include "conformance/check/judge/stale.h"
+#include "conformance/check/judge/sizes.h"
 #include "conformance/check/ring.h"
 #include "conformance/machine/route.h"
 

@@ -63,6 +63,7 @@ void JoinCalls::called(std::uint16_t mote, const Observation& seen,
       calls.open > 0 || std::ranges::any_of(motes_.set(mote), [](const MoteHypothesis& h) {
         return h.unknown || h.join.phase != Phase::kOutside;
       });
+  calls.waits = calls.open > 0;
   ++calls.open;
   calls.last = call;
   calls.called = seen.place;
@@ -76,6 +77,11 @@ void JoinCalls::radio_set(std::uint16_t mote, bool on) {
 
 void JoinCalls::ends(std::uint16_t mote, std::int64_t end_us) {
   judge_over(mote, end_us);
+  judge_silent(mote, end_us);
+}
+
+// Judges a call that by a whole log no request has followed until `end_us`.
+void JoinCalls::judge_silent(std::uint16_t mote, std::int64_t end_us) {
   Calls& calls = calls_[mote];
   if (!calls.asks || !context_.run.has_time) return;
   const std::int64_t called_us = calls.called.time_us;
@@ -103,7 +109,7 @@ void JoinCalls::told(std::uint16_t mote, const Observation& seen, const machine:
                      "One joined event for each call.",
                      {}});
   }
-  if (!joined.success) ends(mote, now);
+  if (!joined.success) judge_silent(mote, now);
   if (calls.open > 0) --calls.open;
   const std::vector<MoteHypothesis> before = set;
   Said said;
@@ -124,9 +130,10 @@ void JoinCalls::told(std::uint16_t mote, const Observation& seen, const machine:
                        {}});
       return;
     }
+    const bool late = judge_late(mote, seen, set);
     for (MoteHypothesis& h : set) h.told = true;
     if (!set.empty()) {
-      context_.findings.kept("J5-SUCCESS"_rule);
+      if (!late) context_.findings.kept("J5-SUCCESS"_rule);
       return;
     }
     const MoteHypothesis& h = before.back();
@@ -145,9 +152,11 @@ void JoinCalls::told(std::uint16_t mote, const Observation& seen, const machine:
     set = before;
     return;
   }
-  // FAIL at once is right for a call while joined (J8-JOINED) or while another call runs.
-  const bool refused =
-      calls.last && calls.refusable && now - calls.called.time_us <= context_.response_us();
+  // FAIL is right at once for a call while joined (J8-JOINED), and at once or later for one while
+  // another runs.
+  const bool waited = std::exchange(calls.waits, false);
+  const bool refused = waited || (calls.last && calls.refusable &&
+                                  now - calls.called.time_us <= context_.response_us());
   const auto fits = [&](const MoteHypothesis& h) {
     return h.unknown || h.join.phase == Phase::kOutside || motes_.may_have_failed(h, now);
   };
@@ -156,6 +165,18 @@ void JoinCalls::told(std::uint16_t mote, const Observation& seen, const machine:
       return !h.unknown && h.join.phase == Phase::kJoining &&
              now > context_.due_us(mote, last_expiry_us(h));
     };
+    const auto member = [](const MoteHypothesis& h) {
+      return !h.unknown && h.join.phase == Phase::kMember && h.told;
+    };
+    if (!refused && calls.refusable && context_.device(mote).whole &&
+        std::ranges::all_of(before, member) && now > context_.due_us(mote, calls.called.time_us)) {
+      context_.report("J8-JOINED"_rule, Severity::kFail, seen.place, mote,
+                      {"joined(FAIL) " + ms_text(now - calls.called.time_us) +
+                           " after joinIsland of a mote that is joined.",
+                       "joined(FAIL), at once.",
+                       {}});
+      return;
+    }
     if (!refused && context_.run.all_stated && std::ranges::all_of(before, late)) {
       context_.report("J8-FAIL"_rule, Severity::kFail, seen.place, mote,
                       {"joined(FAIL) " + ms_text(now - before.back().first_request_us) +
@@ -176,6 +197,27 @@ void JoinCalls::told(std::uint16_t mote, const Observation& seen, const machine:
   said.expected = "Not before expiry " + number(expiries) + " of the timer, " +
                   ms_text(expiries * context_.join_period_us()) + ".";
   context_.report("J8-FAIL"_rule, Severity::kFail, seen.place, mote, std::move(said));
+}
+
+// Says whether by a whole log a success is told later than a golden trace has it, by each of `set`.
+bool JoinCalls::judge_late(std::uint16_t mote, const Observation& seen,
+                           const std::vector<MoteHypothesis>& set) {
+  if (!context_.device(mote).whole || !context_.run.has_time || set.empty()) return false;
+  const auto joined_us = [](const MoteHypothesis& h) {
+    return std::max(h.accepted_us, h.acked_us);
+  };
+  for (const MoteHypothesis& h : set) {
+    if (h.unknown || h.told) return false;
+    const std::int64_t from_us = joined_us(h) + context_.response_us();
+    if (seen.place.time_us <= context_.due_us(mote, from_us)) return false;
+  }
+  const std::int64_t took_us = seen.place.time_us - joined_us(set.back());
+  context_.report("J5-SUCCESS"_rule, Severity::kFail, seen.place, mote,
+                  {"joined(" + text_of(set.back().join.address) + ", SUCCESS) " + ms_text(took_us) +
+                       " after the mote had joined.",
+                   "When it has joined.",
+                   {}});
+  return true;
 }
 
 // Judges a call of joinIsland that by a log is still open at its end, of a mote that is a member.
@@ -226,7 +268,7 @@ void JoinCalls::finish(std::int64_t end_us) {
   for (std::size_t i = 0; i < calls_.size(); ++i) {
     const auto mote = static_cast<std::uint16_t>(i);
     const Device& device = context_.device(mote);
-    if (calls_[mote].asks) ends(mote, end_us);
+    judge_silent(mote, end_us);
     const std::vector<MoteHypothesis>& set = std::as_const(motes_).set(mote);
     const bool known = set.size() == 1 && !set[0].unknown;
     if (device.role != machine::Role::kMote || !device.application || !known) continue;

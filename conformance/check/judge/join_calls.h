@@ -22,8 +22,6 @@ class JoinCalls {
   void called(std::uint16_t mote, const Observation& seen, const machine::JoinIsland& call);
   void told(std::uint16_t mote, const Observation& seen, const machine::Joined& joined);
   void radio_set(std::uint16_t mote, bool on);
-  /// Judges what a log that is whole leaves open where it ends, or where the mote restarts.
-  void ends(std::uint16_t mote, std::int64_t end_us);
   void finish(std::int64_t end_us);
 
  private:
@@ -33,12 +31,17 @@ class JoinCalls {
     std::optional<machine::JoinIsland> last;
     bool refusable = true;  ///< That one may fail at once.
     Place called;
-    bool asks = false;       ///< That one owes a join_request.
+    bool waits = false;      ///< It came while another one ran.
+    bool asks = false;       ///< It owes a join_request.
     bool radio_off = false;  ///< By its application.
   };
 
+  void ends(std::uint16_t mote, std::int64_t end_us);
   void judge_member(std::uint16_t mote, const MoteHypothesis& h, std::int64_t end_us);
   void judge_over(std::uint16_t mote, std::int64_t now_us);
+  void judge_silent(std::uint16_t mote, std::int64_t end_us);
+  bool judge_late(std::uint16_t mote, const Observation& seen,
+                  const std::vector<MoteHypothesis>& set);
   std::int64_t last_expiry_us(const MoteHypothesis& h) const;
 
   Context& context_;

@@ -240,7 +240,7 @@ void Judge::called(const Observation& seen, std::uint16_t device) {
   }
   if (const auto* set = std::get_if<machine::SetInterface>(seen.call)) {
     if (!set->on) acks_.interrupted(device, seen.place.time_us, who_.devices[device].whole);
-    if (!set->on) originals_.interrupted(device);
+    originals_.switched(device, *set, seen.place.time_us);
     if (set->link == machine::Link::kSerial) {
       forwarding_.serial_set(device, set->on);
       announcements_.serial_set(device, set->on, seen.place.time_us);
@@ -263,6 +263,9 @@ void Judge::called(const Observation& seen, std::uint16_t device) {
                      std::holds_alternative<machine::SetIslandId>(call);
   if (const auto* set = std::get_if<machine::SetIslandId>(&call)) {
     asked_island_[device] = set->island;
+    const bool on = !interfaces_.switched_off(device, machine::Link::kSerial);
+    const bool base = is(device, Role::kBaseStation) && who_.devices[device].whole;
+    if (base && on) peis_.asked_island(device, seen, set->island);
     if (!who_.devices[device].whole) {
       originals_.moved(device);
       peis_.moved(device);
@@ -294,6 +297,7 @@ void Judge::told(const Observation& seen, std::uint16_t device) {
     const auto asked = asked_island_.find(device);
     if (asked == asked_island_.end()) return;
     if (done->success && who_.devices[device].whole) own_island_[device] = asked->second;
+    if (!done->success) peis_.refused_island(device);
     asked_island_.erase(asked);
   } else if (const auto* result = std::get_if<machine::SendResult>(seen.notice)) {
     originals_.told(device, seen, *result);
@@ -463,8 +467,10 @@ void Judge::ack_comes(const Net& ack) {
   const std::int32_t acked = machine::acked_seq_num(ack.body());
   if (acked < 0) return;
   const auto seq_num = static_cast<std::uint16_t>(acked);
-  context_.for_motes(ack.dest.devid,
-                     [&](std::uint16_t mote) { originals_.ack_heard(mote, ack, seq_num); });
+  context_.for_motes(ack.dest.devid, [&](std::uint16_t mote) {
+    const std::uint16_t island = motes_.address(mote).value_or(ack.dest).pid;
+    if (island == ack.dest.pid) originals_.ack_heard(mote, ack, seq_num);
+  });
   for (const std::uint16_t sink : context_.sinks) {
     const Device& device = who_.devices[sink];
     if (sinks_.island(sink) != ack.dest.pid) continue;
@@ -477,6 +483,9 @@ void Judge::ack_comes(const Net& ack) {
 
 void Judge::serial(std::uint32_t index, const Observation& seen, const Mark& mark) {
   const std::uint16_t sink = seen.to_mote ? who_.devices[mark.device].partner : mark.device;
+  if (seen.to_mote && !seen.received && seen.frame.type == am::kConfig) {
+    peis_.told_island(mark.device, seen, set_island_id(seen.frame));
+  }
   if (sink == kNobody) {  // Nothing is known of the sink, as in a part of a run.
     Net net;
     const bool handed = seen.to_mote && !seen.received && seen.frame.type == am::kNet;

@@ -20,12 +20,6 @@ machine::Router base_station(machine::Address own, std::uint16_t sink_am) {
   return {Role::kBaseStation, own, true, sink_am};
 }
 
-// On the serial line nbytes and the bytes after the payload may differ (N6-CONTENT).
-bool same_content(const Net& serial, const Net& peis) {
-  return same_message(serial, peis) && serial.payload.size() >= peis.payload.size() &&
-         equal(serial.payload.first(peis.payload.size()), peis.payload);
-}
-
 }  // namespace
 
 bool logs_peis(const Run& run, std::uint16_t node) {
@@ -38,7 +32,7 @@ PeisWatch::Message* PeisWatch::match(Messages& messages, const Net& net) {
   for (std::size_t i = 0; i < messages.size(); ++i) {
     Message& message = messages.oldest(i);
     if (message.passed) continue;
-    if (same_content(message.net, net) || same_content(net, message.net)) return &message;
+    if (same_message(message.net, net) && same_payload(message.net, net)) return &message;
   }
   return nullptr;
 }
@@ -136,7 +130,7 @@ void PeisWatch::refuse(std::uint16_t base, const Observation& seen, const Net& n
   said.expected = "What " + origin + ", once, with addresses, reliable, number and payload.";
   if (other == nullptr) {
     said.text += "; nothing that " + origin + " was this.";
-  } else if (other->passed && same_content(net, other->net)) {
+  } else if (other->passed && same_message(net, other->net) && same_payload(net, other->net)) {
     said.text += " again.";
   } else {
     said.text += "; " + origin + " " + name_of(other->net) + ", reliable " +
@@ -172,7 +166,38 @@ void PeisWatch::overdue(std::uint16_t base, Messages& messages, bool up, std::in
   }
 }
 
+void PeisWatch::asked_island(std::uint16_t base, const Observation& call, std::uint16_t island) {
+  bases_[base].asked = call.place;
+  bases_[base].island = island;
+}
+
+void PeisWatch::told_island(std::uint16_t base, const Observation& seen, std::int32_t island) {
+  Base& watch = bases_[base];
+  if (!watch.asked) return;
+  watch.asked.reset();
+  if (island == watch.island) return context_.findings.kept("N9-SET"_rule);
+  context_.report("N9-SET"_rule, Severity::kFail, seen.place, base,
+                  {"After the call that sets island " + number(watch.island) +
+                       " the config message to the sink sets " +
+                       (island < 0 ? "none." : number(static_cast<std::uint64_t>(island)) + "."),
+                   "SET_ISLAND_ID with the island of the call.",
+                   {}});
+}
+
+void PeisWatch::overdue_island(std::uint16_t base, std::int64_t now_us) {
+  Base& watch = bases_[base];
+  if (!watch.asked || !context_.run.has_time) return;
+  if (now_us <= context_.due_us(base, watch.asked->time_us, Link::kSerial)) return;
+  context_.report("N9-SET"_rule, Severity::kFail, *watch.asked, base,
+                  {"The application sets island " + number(watch.island) +
+                       ", and the sink is not told within " + ms_text(context_.response_us()) + ".",
+                   "A config message SET_ISLAND_ID to the sink.",
+                   {}});
+  watch.asked.reset();
+}
+
 void PeisWatch::overdue(std::uint16_t base, std::int64_t now_us) {
+  overdue_island(base, now_us);
   overdue(base, bases_[base].up, true, now_us, false);
   overdue(base, bases_[base].down, false, now_us, false);
 }
@@ -180,6 +205,7 @@ void PeisWatch::overdue(std::uint16_t base, std::int64_t now_us) {
 void PeisWatch::finish(std::int64_t end_us) {
   for (std::size_t base = 0; base < bases_.size(); ++base) {
     const auto index = static_cast<std::uint16_t>(base);
+    overdue_island(index, end_us);
     overdue(index, bases_[base].up, true, end_us, true);
     overdue(index, bases_[base].down, false, end_us, true);
   }

@@ -1,7 +1,9 @@
-// Judges what base stations pass on between their sinks and PEIS, where a log has these lines.
+// Judges what base stations pass on between their sinks and PEIS, and that they tell their sinks
+// the island that an application sets, where a log has these lines.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "conformance/check/judge/context.h"
@@ -33,6 +35,12 @@ class PeisWatch {
              bool serial_off);
   /// Judges a message that `base` sends down to its sink and that is not its own.
   void went_down(std::uint16_t base, const Observation& seen, const Net& net);
+  /// Notes a call that sets the island, which `base` must tell its sink.
+  void asked_island(std::uint16_t base, const Observation& call, std::uint16_t island);
+  /// Notes that the call failed.
+  void refused_island(std::uint16_t base) { bases_[base].asked.reset(); }
+  /// Judges a config message of `base` that sets `island`; -1 if it sets none.
+  void told_island(std::uint16_t base, const Observation& seen, std::int32_t island);
   /// Judges what the base station owes, by a log that has all that it does until then.
   void overdue(std::uint16_t base, std::int64_t now_us);
   void finish(std::int64_t end_us);
@@ -49,14 +57,17 @@ class PeisWatch {
   };
   using Messages = Ring<Message, kRoom>;
   struct Base {
-    Messages up;         ///< From the sink.
-    Messages down;       ///< From PEIS.
-    bool moved = false;  ///< Its application set another island.
+    Messages up;                 ///< From the sink.
+    Messages down;               ///< From PEIS.
+    bool moved = false;          ///< Its application set another island.
+    std::optional<Place> asked;  ///< A call that set `island`, which the sink was not told yet.
+    std::uint16_t island = 0;
   };
 
   static Message* match(Messages& messages, const Net& net);
   void refuse(std::uint16_t base, const Observation& seen, const Net& net, Messages& messages,
               bool up);
+  void overdue_island(std::uint16_t base, std::int64_t now_us);
   void overdue(std::uint16_t base, Messages& messages, bool up, std::int64_t now_us, bool end);
 
   Context& context_;

@@ -55,7 +55,8 @@ void Originals::called(std::uint16_t node, const Observation& seen, const machin
   const Link up = base ? Link::kPeis : device.role == Role::kSink ? Link::kSerial : Link::kRadio;
   const bool to_mote = here && call.dest.devid != machine::kNullDevid;
   const bool may_stay = free || !shown || moved_[node];
-  calls_[node].push({&call, {}, {}, seen.place, may_stay, to_mote ? down : up, may_stay});
+  calls_[node].push(
+      {&call, {}, {}, seen.place, may_stay, to_mote ? down : up, may_stay, seen.place.time_us});
 }
 
 void Originals::used(std::uint16_t node, std::uint16_t number) {
@@ -67,11 +68,18 @@ void Originals::used(std::uint16_t node, std::uint16_t number) {
   }
 }
 
-void Originals::interrupted(std::uint16_t node) {
+void Originals::switched(std::uint16_t node, const machine::SetInterface& set,
+                         std::int64_t now_us) {
   // By a whole log what send accepted waits until the interface is on again.
   const bool whole = context_.device(node).whole;
   for (std::size_t i = 0; i < calls_[node].size(); ++i) {
-    (whole ? calls_[node].newest(i).held : calls_[node].newest(i).free) = true;
+    Call& one = calls_[node].newest(i);
+    if (!set.on) {
+      (whole ? one.held : one.free) = true;
+    } else if (one.held && !one.free && one.line == set.link) {
+      one.held = false;
+      one.since_us = now_us;
+    }
   }
 }
 
@@ -165,7 +173,7 @@ void Originals::judge_order(std::uint16_t node, const Observation& seen, const C
 // Says that by a whole log a message left later than an answer may, with nothing else to wait for.
 void Originals::judge_late(std::uint16_t node, const Observation& seen, const Call& call,
                            Link link) {
-  const std::int64_t called_us = call.place.time_us;
+  const std::int64_t called_us = call.since_us;
   if (!context_.device(node).whole || call.held || call.result != call.left) return;
   if (seen.place.time_us <= context_.due_us(node, called_us, link)) return;
   // It may have waited behind another one.
@@ -173,12 +181,12 @@ void Originals::judge_late(std::uint16_t node, const Observation& seen, const Ca
       sent_[node].size() > 0 &&
       seen.place.time_us - sent_[node].newest(0).place.time_us <= context_.response_us();
   const bool waits = behind || context_.crowded(node, called_us);
-  context_.report("N2-ONCE"_rule, waits ? Severity::kInconclusive : Severity::kFail, seen.place,
-                  node,
-                  {"The message that send accepted leaves " +
-                       ms_text(seen.place.time_us - called_us) + " after the call.",
-                   "Within " + ms_text(context_.response_us()) + ".",
-                   {}});
+  context_.report(
+      "N2-ONCE"_rule, waits ? Severity::kInconclusive : Severity::kFail, seen.place, node,
+      {"The message that send accepted leaves " + ms_text(seen.place.time_us - called_us) +
+           " after " + (called_us == call.place.time_us ? "the call." : "its interface is on."),
+       "Within " + ms_text(context_.response_us()) + ".",
+       {}});
 }
 
 // Judges the number of a message that left and the one that send returned for it.
@@ -295,16 +303,7 @@ void Originals::sent(std::uint16_t node, const Observation& seen, const Net& net
 }
 
 void Originals::judge_content(std::uint16_t node, const Observation& seen, const Net& net) {
-  if (!net.sound) {
-    const bool range = !NetAt::NbytesAt::allows(net.nbytes);
-    context_.report(range ? "WIRE-NET-NBYTES"_rule : "WIRE-NET-PAYLOAD"_rule, Severity::kFail,
-                    seen.place, node,
-                    {"nbytes is " + number(net.nbytes) + " in a message of " +
-                         number(net.payload.size()) + " bytes.",
-                     "2 to 102, and no more than the message has.",
-                     {}});
-    return;
-  }
+  if (!net.sound) return report_nbytes(context_, node, seen.place, net);
   const std::size_t came = seen.frame.payload.size() - kNetHeaderBytes;
   if (seen.kind == Observation::Kind::kRadio && came > net.nbytes) {
     stale_[node].add(seen.place, net.nbytes, came);

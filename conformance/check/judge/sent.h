@@ -7,7 +7,7 @@
 
 #include "conformance/check/judge/context.h"
 #include "conformance/check/judge/interface_watch.h"
-#include "conformance/check/judge/stale.h"
+#include "conformance/check/judge/sizes.h"
 #include "conformance/check/ring.h"
 
 namespace rubric::check {
@@ -36,8 +36,8 @@ class Originals {
   void moved(std::uint16_t node) { moved_[node] = true; }
   /// Notes that a frame of the node has that number, whoever's message it is.
   void used(std::uint16_t node, std::uint16_t number);
-  /// Notes that an interface was switched off, so that what waits may be lost.
-  void interrupted(std::uint16_t node);
+  /// Notes that an interface is switched: while it is off what waits stays, or may be lost.
+  void switched(std::uint16_t node, const machine::SetInterface& set, std::int64_t now_us);
   void told(std::uint16_t node, const Observation& seen, const machine::SendResult& result);
   /// Returns whether a call of its application, by a log, asked for such a message that did not
   /// leave yet.
@@ -70,7 +70,8 @@ class Originals {
     Place place;
     bool free = false;                           ///< It need not leave, or that is not seen.
     machine::Link line = machine::Link::kRadio;  ///< By which it leaves.
-    bool held = false;                           ///< An interface was off, or it need not leave.
+    bool held = false;                           ///< An interface is off, or it need not leave.
+    std::int64_t since_us = 0;                   ///< It may leave: the call, or its interface on.
     std::int64_t left_us = -1;                   ///< When it left.
   };
 

@@ -1,5 +1,5 @@
 // Notes of bytes that are no content, and of serial messages without them.
-#include "conformance/check/judge/stale.h"
+#include "conformance/check/judge/sizes.h"
 
 #include <gtest/gtest.h>
 

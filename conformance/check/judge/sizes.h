@@ -1,5 +1,6 @@
-// Bytes of a message that are no content: left over in the sender's buffer. Legal on a serial line
-// (N6-CONTENT); a note shows where they are, since readers take them for content.
+// What a message says of its own size. Bytes that are no content: left over in the sender's buffer.
+// Legal on a serial line (N6-CONTENT); a note shows where they are, since readers take them for
+// content.
 #pragma once
 
 #include <cstdint>
@@ -37,6 +38,17 @@ inline void note_stale(Context& context, std::uint16_t node, ReqId requirement, 
   }
   context.report(requirement, Severity::kNote, stale.first, node,
                  {text + ".", "No byte after the content.", {}});
+}
+
+/// Reports a message that is malformed, as its nbytes lies (decision 113).
+inline void report_nbytes(Context& context, std::uint16_t node, const Place& at, const Net& net) {
+  const bool range = !NetAt::NbytesAt::allows(net.nbytes);
+  context.report(range ? "WIRE-NET-NBYTES"_rule : "WIRE-NET-PAYLOAD"_rule, Severity::kFail, at,
+                 node,
+                 {"nbytes is " + number(net.nbytes) + " in a message of " +
+                      number(net.payload.size()) + " bytes.",
+                  "2 to 102, and no more than the message has.",
+                  {}});
 }
 
 }  // namespace rubric::check
