@@ -23,6 +23,8 @@ constexpr std::int64_t kLateAckUs = 50'000;
 constexpr std::size_t kInterruptedMax = 4;  // More often it is the nodes that are slow.
 constexpr std::int64_t kResponseUs = AlignOptions{}.response_us;
 constexpr std::int64_t kSlowestUs = 1'000'000;  // Nobody waits for nodes that are slower.
+constexpr std::int64_t kHiddenUs = 1'000'000;   // A step forth that nothing shows is no longer.
+constexpr std::int64_t kLongUs = 5'000'000;     // No node takes so long.
 constexpr std::int64_t kAckRepeatUs = 810'000;  // After its reply an ack_join comes no later.
 constexpr std::int64_t kSilenceUs = 20'000'000;
 constexpr std::int64_t kSilences = 10;  // Times the longest of the others.
@@ -166,8 +168,16 @@ class Recorded {
     if (low_wrong && i + 1 < stamps_.size()) suspect_[i + 1] = What::kStep;
   }
 
+  // Marks steps forth. Where there are some, shorter ones may hide in silences.
   void look_forth() {
     if (stamps_.size() < kManyFrames) return;
+    const auto steps = [&] { return std::ranges::count(suspect_, What::kStep); };
+    const auto back = steps();
+    mark_forth();
+    if (steps() > back) run_.slack_us = std::max(run_.slack_us, kHiddenUs);
+  }
+
+  void mark_forth() {
     interrupted();
     std::int64_t longest = 0;
     std::int64_t second = 0;
@@ -215,9 +225,9 @@ class Recorded {
         if (cause == causes.end()) continue;
         const bool repeats = std::get<Hop>(end) == Hop::kRepeat;
         for (const std::size_t at :
-             late_by_silence(cause->second, i, repeats ? kAckRepeatUs : usual_us,
-                             repeats ? kInterruptedMax : 1)) {
-          if (repeats || nothing_lost(at)) silences.insert(at);
+             late_by_silence(cause->second, i, repeats ? kAckRepeatUs : usual_us, repeats)) {
+          const bool long_silence = stamps_[at] - stamps_[at - 1] > kSilenceUs;
+          if (repeats || long_silence || nothing_lost(at)) silences.insert(at);
         }
         if (!repeats) causes.erase(cause);
       }
@@ -251,10 +261,11 @@ class Recorded {
     return true;
   }
 
-  // Returns the frames after the longest silences between two frames, at most `count`, if the time
-  // from one to the other is more than `limit_us` and without these silences it is not.
+  // Returns the frames after the longest silences between two frames, if the time from one to the
+  // other is more than `limit_us` and without these silences it is not. After the first one only
+  // `several` count, or such as no node takes.
   std::vector<std::size_t> late_by_silence(std::size_t from, std::size_t to, std::int64_t limit_us,
-                                           std::size_t count) const {
+                                           bool several) const {
     std::int64_t all_us = 0;
     std::vector<std::pair<std::int64_t, std::size_t>> gaps;
     for (std::size_t i = from + 1; i <= to; ++i) {
@@ -266,7 +277,8 @@ class Recorded {
     std::vector<std::size_t> out;
     for (const auto& [gap_us, at] : gaps) {
       if (all_us <= limit_us) return out;
-      if (out.size() == count) break;
+      if (out.size() == kInterruptedMax) break;
+      if (!out.empty() && !several && gap_us < kLongUs) break;
       all_us -= gap_us;
       out.push_back(at);
     }

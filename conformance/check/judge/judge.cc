@@ -263,9 +263,9 @@ void Judge::called(const Observation& seen, std::uint16_t device) {
                      std::holds_alternative<machine::SetIslandId>(call);
   if (const auto* set = std::get_if<machine::SetIslandId>(&call)) {
     asked_island_[device] = set->island;
-    const bool on = !interfaces_.switched_off(device, machine::Link::kSerial);
-    const bool base = is(device, Role::kBaseStation) && who_.devices[device].whole;
-    if (base && on) peis_.asked_island(device, seen, set->island);
+    const bool owes = !interfaces_.switched_off(device, machine::Link::kSerial) &&
+                      !machine::is_reserved(set->island) && who_.devices[device].whole;
+    if (owes && is(device, Role::kBaseStation)) peis_.asked_island(device, seen, set->island);
     if (!who_.devices[device].whole) {
       originals_.moved(device);
       peis_.moved(device);

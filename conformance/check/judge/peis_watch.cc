@@ -52,8 +52,9 @@ void PeisWatch::surely_up(std::uint16_t base, const Net& net, std::int64_t now_u
   for (std::size_t i = 0; i < up.size(); ++i) {
     Message& message = up.newest(i);
     if (!same_message(message.net, net)) continue;
-    message.owed = !message.passed && message.net.sound;
+    message.owed = !message.passed && net.sound;
     message.given_us = now_us;
+    message.net = net;  // As it was given, perhaps without the bytes after its content.
     return;
   }
 }

@@ -88,9 +88,12 @@ TEST(Legal, NoAlarmComesBack) {
       {"ack_join_often", 12, "drops_and_steps"},  // A step between repeats; the reply was dropped.
       {"stated_slow", 13, "steps_forth"},         // A step among reactions that all are slow.
       {"stated_slow_join_timer", 364, "steps_back"},  // A step as long as the silence before it.
-      {"foreign_mote_to_sink", 46, "steps_forth"},  // A step before an ack to another island.
-      {"mixed", 372, "drops"},                      // A lossy line, shown by an ack without packet.
-      {"mixed", 584, "steps_often"},                // A step after a damaged frame.
+      {"mixed", 6602, "steps_often"},                 // Two steps forth in one join.
+      {"stated_slow", 294, "steps_often"},            // A step forth that looks like a silence.
+      {"mixed", 16304, "steps_often"},                // The same, with packets that are missing.
+      {"foreign_mote_to_sink", 46, "steps_forth"},    // A step before an ack to another island.
+      {"mixed", 372, "drops"},           // A lossy line, shown by an ack without packet.
+      {"mixed", 584, "steps_often"},     // A step after a damaged frame.
       {"mixed", 275, "drops"},           // A repeat after a message; the join was dropped.
       {"two_sinks_first", 14, "exact"},  // A PC's message on the other island's line.
       {"in_full", 195, "exact"},         // A buffer filled by messages that only passed through.
@@ -126,13 +129,16 @@ std::pair<std::uint64_t, std::uint64_t> seeds() {
   return {number, std::strtoull(end + 1, nullptr, 10)};
 }
 
-// The stamps are wrong and packets are missing; the nodes are honest all the same.
+// The stamps are wrong and packets are missing; the nodes are honest all the same. RUBRIC_RECORDER
+// names one recorder, in place of all.
 TEST(Legal, NothingFailsHoweverItIsRecorded) {
   const auto [first, last] = seeds();
   Count count;
   count.different = first == last;
   for (const lawful::Recorder& recorder : lawful::recorders()) {
     const std::string how(recorder.name);
+    if (const char* const one = std::getenv("RUBRIC_RECORDER"); one != nullptr && how != one)
+      continue;
     for (std::uint64_t seed = first; seed <= last; ++seed) {
       for (const lawful::Variant& variant : lawful::variants()) {
         judge_both(std::string(variant.name), seed, how, count);
