@@ -120,7 +120,7 @@ class LogReader {
       run_.watched_until_us = std::max(run_.watched_until_us, us_of(line.time.to + 1));
     }
     if (line.op != Op::kGiven && line.op != Op::kEmits) return;
-    if (line.op == Op::kGiven) take_busy(line, time_us);
+    if (line.op == Op::kGiven) take_state(line, time_us);
     const std::optional<LinkKind> kind = scope_.link(line.link);
     if (!kind || line.node == "*") return;
     Observation seen;
@@ -139,7 +139,8 @@ class LogReader {
     }
   }
 
-  void take_busy(const Line& line, std::int64_t time_us) {
+  void take_state(const Line& line, std::int64_t time_us) {
+    if (line.message.name == "linkack") return take_link_ack(line, time_us);
     const bool busy = line.message.name == "busy";
     const std::optional<LinkKind> kind = scope_.link(line.link);
     if ((!busy && line.message.name != "idle") || !kind) return;
@@ -150,6 +151,16 @@ class LogReader {
         if (one.line == link) one.to_us = std::min(one.to_us, time_us);
       }
       if (busy) node.busy.push_back({time_us, INT64_MAX, link});
+    }
+  }
+
+  void take_link_ack(const Line& line, std::int64_t time_us) {
+    const auto acked = [](const trace::FieldValue& field) {
+      return field.path == "acked" && field.value.number == 1;
+    };
+    if (std::ranges::none_of(line.message.fields, acked)) return;
+    for (LoggedNode& node : run_.nodes) {
+      if (node.name == line.node) node.link_acks_us.push_back(time_us);
     }
   }
 

@@ -111,6 +111,7 @@ void JoinCalls::told(std::uint16_t mote, const Observation& seen, const machine:
   }
   if (!joined.success) judge_silent(mote, now);
   if (calls.open > 0) --calls.open;
+  motes_.link_told(mote, now);
   const std::vector<MoteHypothesis> before = set;
   Said said;
   said.hypotheses = motes_.explanations(before, "");
@@ -158,25 +159,26 @@ void JoinCalls::told(std::uint16_t mote, const Observation& seen, const machine:
   const bool refused = waited || (calls.last && calls.refusable &&
                                   now - calls.called.time_us <= context_.response_us());
   const auto fits = [&](const MoteHypothesis& h) {
-    return h.unknown || h.join.phase == Phase::kOutside || motes_.may_have_failed(h, now);
+    return h.unknown || h.join.phase == Phase::kOutside ||
+           (!h.linked && motes_.may_have_failed(h, now));
   };
+  const auto member = [](const MoteHypothesis& h) {
+    return !h.unknown && h.join.phase == Phase::kMember && h.told;
+  };
+  if (!refused && calls.refusable && context_.device(mote).whole &&
+      std::ranges::all_of(before, member) && now > context_.due_us(mote, calls.called.time_us)) {
+    context_.report("J8-JOINED"_rule, Severity::kFail, seen.place, mote,
+                    {"joined(FAIL) " + ms_text(now - calls.called.time_us) +
+                         " after joinIsland of a mote that is joined.",
+                     "joined(FAIL), at once.",
+                     {}});
+    return;
+  }
   if (refused || std::any_of(before.begin(), before.end(), fits)) {
     const auto late = [&](const MoteHypothesis& h) {
       return !h.unknown && h.join.phase == Phase::kJoining &&
              now > context_.due_us(mote, last_expiry_us(h));
     };
-    const auto member = [](const MoteHypothesis& h) {
-      return !h.unknown && h.join.phase == Phase::kMember && h.told;
-    };
-    if (!refused && calls.refusable && context_.device(mote).whole &&
-        std::ranges::all_of(before, member) && now > context_.due_us(mote, calls.called.time_us)) {
-      context_.report("J8-JOINED"_rule, Severity::kFail, seen.place, mote,
-                      {"joined(FAIL) " + ms_text(now - calls.called.time_us) +
-                           " after joinIsland of a mote that is joined.",
-                       "joined(FAIL), at once.",
-                       {}});
-      return;
-    }
     if (!refused && context_.run.all_stated && std::ranges::all_of(before, late)) {
       context_.report("J8-FAIL"_rule, Severity::kFail, seen.place, mote,
                       {"joined(FAIL) " + ms_text(now - before.back().first_request_us) +
@@ -189,6 +191,14 @@ void JoinCalls::told(std::uint16_t mote, const Observation& seen, const machine:
       for (MoteHypothesis& h : set) h.join = JoinMote{};
       set.resize(1);
     }
+    return;
+  }
+  if (before.back().linked) {
+    context_.report("J5-SUCCESS"_rule, Severity::kFail, seen.place, mote,
+                    {"joined(FAIL), although the link told the mote that its ack_join for " +
+                         text_of(before.back().join.address) + " was received.",
+                     "joined(" + text_of(before.back().join.address) + ", SUCCESS).",
+                     std::move(said.hypotheses)});
     return;
   }
   said.text = "joined(FAIL) " + ms_text(now - before.back().first_request_us) +

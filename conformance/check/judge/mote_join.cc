@@ -65,7 +65,9 @@ bool MoteJoins::next_request(const MoteHypothesis& h, std::uint16_t id, std::int
   context_.actions.clear();
   if (h.unknown || h.join.phase == Phase::kOutside) return fresh_call();
   // A mote that accepted, but had no link ack, may let its timer run on (decision 102).
-  if (h.join.phase == Phase::kMember && (h.sent || h.confirmed || h.told)) return false;
+  if (h.join.phase == Phase::kMember && (h.sent || h.confirmed || h.linked || h.told)) {
+    return false;
+  }
   const std::int64_t least_us = context_.join_period_us() - context_.early_us();
   const bool in_time = now_us - h.last_request_us >= least_us;
   bool any = false;
@@ -100,6 +102,7 @@ void MoteJoins::request(std::uint16_t mote, const Observation& seen, const Reque
   } else {
     context_.findings.kept("J1-DEST"_rule);
   }
+  link_told(mote, now);
   next_.clear();
   if (!seen.place.timed()) {  // Any number of periods may lie between two frames.
     MoteHypothesis asked;
@@ -122,6 +125,17 @@ void MoteJoins::request(std::uint16_t mote, const Observation& seen, const Reque
   keep(watch, next_, mote, seen);
 }
 
+void MoteJoins::link_told(std::uint16_t mote, std::int64_t now_us) {
+  if (mote >= context_.run.nodes.size()) return;  // A log's nodes are the first devices.
+  for (MoteHypothesis& h : motes_[mote].set) {
+    if (h.join.phase != Phase::kMember || h.acks_seen == 0) continue;
+    const std::int64_t first_us = h.acks_seen == 1 ? h.acked_us : h.accepted_us;
+    const std::int64_t last_us = std::min(now_us, h.acked_us + context_.response_us());
+    const auto its = [&](std::int64_t at_us) { return at_us >= first_us && at_us <= last_us; };
+    h.linked = h.linked || std::ranges::any_of(context_.run.nodes[mote].link_acks_us, its);
+  }
+}
+
 void MoteJoins::refuse_request(std::uint16_t mote, const Observation& seen,
                                const Request& request) {
   MoteWatch& watch = motes_[mote];
@@ -138,7 +152,8 @@ void MoteJoins::refuse_request(std::uint16_t mote, const Observation& seen,
   const std::int64_t period = context_.join_period_us();
   if (h.join.phase == Phase::kMember) {
     rule = "J5-STOP"_rule;
-    if (!h.sent && !h.told) severity = Severity::kInconclusive;  // A link ack alone (decision 102).
+    // A link ack on the air alone may not have come (decision 102).
+    if (!h.sent && !h.told && !h.linked) severity = Severity::kInconclusive;
     said.text = "A join_request with number " + number(request.seq_num) +
                 " although the mote has joined " + text_of(h.join.address) + ".";
     said.expected = "No join_request of a mote that is joined.";

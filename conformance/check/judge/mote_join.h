@@ -65,6 +65,7 @@ struct MoteHypothesis {
   bool renumbered = false;       ///< Requests of this call had several numbers.
   std::uint8_t acks_seen = 0;    ///< ack_join on the air.
   bool confirmed = false;        ///< The link acknowledged its ack_join; it may have heard that.
+  bool linked = false;           ///< By its log the mote surely heard that.
   std::int64_t acked_us = 0;     ///< The last ack_join.
   bool unaccepted = false;       ///< It acked what it could not accept.
   bool told = false;             ///< Its application got joined(SUCCESS).
@@ -91,6 +92,8 @@ class MoteJoins {
 
   const std::vector<MoteHypothesis>& set(std::uint16_t mote) const { return motes_[mote].set; }
   std::vector<MoteHypothesis>& set(std::uint16_t mote) { return motes_[mote].set; }
+  /// Notes what the link told the mote until `now_us`, by its log.
+  void link_told(std::uint16_t mote, std::int64_t now_us);
   /// Returns whether the mote was offered what its request had not asked for.
   bool stray_offer(std::uint16_t mote) const { return motes_[mote].wrong_reply.has_value(); }
   /// Returns at which expiry of its timer a call may fail first (decision 101).
