@@ -284,8 +284,8 @@ void tick(Node& node) {
 void set_island(Node& node, std::uint16_t island) {
   State& state = node.state;
   const bool changes = island != state.island;
-  //= N9-SET: A config message SET_ISLAND_ID over serial sets the sink's island id; what the sink
-  //= does after it uses the new one.
+  //= N9-SET: A config message SET_ISLAND_ID over serial sets the sink's island id, and a base
+  //= station sends it when its own is set; what both do after it uses the new one.
   state.island = island;
   node.actions.followed("N9-SET"_rule);
   if (changes) state.present.clear();

@@ -195,8 +195,8 @@ inline void Node::hear_config(Bytes payload) {
   //= N9-OTHER: A config message of another type, or with a reserved island id, changes nothing.
   if (!config || config->type() != rubicon::CommandCode::kSetIslandId) return;
   if (is_reserved(config->value()) || config->value() == island_) return;
-  //= N9-SET: A config message SET_ISLAND_ID over serial sets the sink's island id; what the sink
-  //= does after it uses the new one.
+  //= N9-SET: A config message SET_ISLAND_ID over serial sets the sink's island id, and a base
+  //= station sends it when its own is set; what both do after it uses the new one.
   island_ = config->value();
   //= N9-MEMBERS: A sink whose island id changes forgets its members.
   admissions_.clear();

@@ -20,12 +20,12 @@
 // - Forth, in a file of kManyFrames: an acknowledgement of the link that comes kLateAckUs after its
 //   frame, with nothing between the two; a silence of all taps without which an effect, such as a
 //   forward, came in time after its cause, and which is long, or before which no sender's DSNs have
-//   a gap (more than kInterruptedMax of them are slow nodes: then "in time" is what leaves so many);
-//   or a silence that is longer than kSilenceUs and by far than any other (kSilences).
+//   a gap (more than kInterruptedMax are slow nodes: then "in time" is what leaves so many); or a
+//   silence that is longer than kSilenceUs and by far than any other (kSilences).
 //
 // Cannot know: a step forth that looks like an ordinary silence, and one back that is shorter than
-// the silence in which it happened. Where a clock stepped forth elsewhere, response times are longer
-// by what may hide so (Run::slack_us).
+// the silence in which it happened. Where a clock stepped forth elsewhere, response times are
+// longer by what may hide so (Run::slack_us).
 //
 // Why a doubt here blames nobody: judge_each_gap() judges the run as if the frames after each step
 // had come at once, and as if they had come much later. A failure remains if both have it.

@@ -113,6 +113,14 @@ void Originals::told(std::uint16_t node, const Observation& seen,
                      const machine::SendResult& result) {
   if (calls_[node].size() == 0) return;
   Call& call = calls_[node].newest(0);
+  if (call.result && context_.device(node).whole) {
+    context_.report("N1-SEQ"_rule, Severity::kFail, seen.place, node,
+                    {"send returns " + number(result.seq_num) + " after " + number(*call.result) +
+                         " for one call, to " + text_of(call.send->dest) + ".",
+                     "One result for each call.",
+                     {}});
+    return;
+  }
   call.result = result.seq_num;
   if (result.seq_num == machine::kNoSeq) judge_refused(node, seen, call);
   if (call.left) judge_result(node, seen, call);
