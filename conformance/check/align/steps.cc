@@ -224,8 +224,12 @@ class Recorded {
         const auto cause = causes.find(end);
         if (cause == causes.end()) continue;
         const bool repeats = std::get<Hop>(end) == Hop::kRepeat;
-        for (const std::size_t at :
-             late_by_silence(cause->second, i, repeats ? kAckRepeatUs : usual_us, repeats)) {
+        const std::vector<std::size_t> found =
+            late_by_silence(cause->second, i, repeats ? kAckRepeatUs : usual_us, repeats);
+        // A node may repeat too late by itself, so that these silences must be rare ones.
+        const auto rare = [this](std::size_t at) { return stands_out(at); };
+        if (repeats && !std::ranges::all_of(found, rare)) continue;
+        for (const std::size_t at : found) {
           const bool long_silence = stamps_[at] - stamps_[at - 1] > kSilenceUs;
           if (repeats || long_silence || nothing_lost(at)) silences.insert(at);
         }
@@ -283,6 +287,15 @@ class Recorded {
       out.push_back(at);
     }
     return all_us <= limit_us ? out : std::vector<std::size_t>{};
+  }
+
+  // Returns whether few silences of the file are as long as that before frame `at`.
+  bool stands_out(std::size_t at) const {
+    std::size_t as_long = 0;
+    for (std::size_t i = 1; i < stamps_.size() && as_long <= kInterruptedMax; ++i) {
+      as_long += stamps_[i] - stamps_[i - 1] >= stamps_[at] - stamps_[at - 1] ? 1 : 0;
+    }
+    return as_long <= kInterruptedMax;
   }
 
   // Returns whether frame `i` acknowledges the one directly before it.

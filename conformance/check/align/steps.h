@@ -21,7 +21,10 @@
 //   frame, with nothing between the two; a silence of all taps without which an effect, such as a
 //   forward, came in time after its cause, and which is long, or before which no sender's DSNs have
 //   a gap (more than kInterruptedMax are slow nodes: then "in time" is what leaves so many); or a
-//   silence that is longer than kSilenceUs and by far than any other (kSilences).
+//   silence that is longer than kSilenceUs and by far than any other (kSilences). Silences that
+//   would put a repeated ack_join in time must be among the kInterruptedMax longest of the file:
+//   nothing forces a mote to repeat one, so that one that is late between ordinary silences is the
+//   mote's doing.
 //
 // Cannot know: a step forth that looks like an ordinary silence, and one back that is shorter than
 // the silence in which it happened. Where a clock stepped forth elsewhere, response times are

@@ -110,6 +110,23 @@ TEST(Steps, ALinkAckThatComesMuchLaterShowsOneForth) {
   }
 }
 
+// A lawful mote repeats its ack_join for less than a second, and need not repeat it at all.
+TEST(Steps, ALateAckJoinBetweenOrdinarySilencesShowsNone) {
+  Script script;
+  script.join(0, 11, 2, 100).join(100, 11, 3, 200);
+  for (int i = 1; i < 20; ++i) {
+    NetFields up;
+    up.dest = {11, machine::kNullDevid};
+    up.src = {11, 2};
+    up.seq_num = static_cast<std::uint16_t>(i);
+    if (i == 4) script.ack_join(1590, 11, 3, 200);
+    script.net(400 * i, 2, 1, up).up(400 * i + 15, up.forwarded());
+  }
+  const check::Run run = stepped_at(script, 0, 0);
+  EXPECT_TRUE(run.steps.empty());
+  ASSERT_EQ(failures_of(judge(run, strict())).size(), 1U);
+}
+
 // A request that comes too early: blamed before the step and after it, but not across it.
 TEST(Steps, OnlyWhatSpansThemIsInconclusive) {
   for (const double at_ms : {2000.0, 5000.0}) {
