@@ -33,7 +33,8 @@ void Acks::arrived(std::uint16_t node, const Observation& seen, std::uint16_t se
   arrived.doubtful = arrival.doubtful;
   const bool known = net.sound && net.reliable <= 1 && net.trans_id == component::kConnless &&
                      machine::is_known_app(net.app_id);
-  if (known && !arrival.free && arrived.forbidden == ReqId::kNone) {
+  const bool expected = !arrival.free || arrival.delivers == "N11-SHORT"_rule;
+  if (known && expected && arrived.forbidden == ReqId::kNone) {
     arrived.delivers = arrival.delivers;
   }
   arrived.sure = arrival.sure;
@@ -154,6 +155,20 @@ void Acks::judge_ack_order(std::uint16_t node, const Observation& seen, const Ar
   }
 }
 
+// Takes an ack of a number that never came for that of a message which waits for its ack: what is
+// missing of that one is said with the wrong number.
+void Acks::meant_ack(std::uint16_t node, const Net& ack) {
+  Ring<Arrived, kRoom>& ring = arrived_[node];
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    Arrived& arrived = ring.oldest(i);
+    if (!arrived.must_ack || arrived.acks > 0 || arrived.net.src != ack.dest) continue;
+    if (arrived.net.app_id != ack.app_id) continue;
+    if (arrived.sure) --owed_[node];
+    ++arrived.acks;
+    return;
+  }
+}
+
 void Acks::refuse(std::uint16_t node, const Observation& seen, const Net& ack, std::int32_t acked,
                   Arrived* best) {
   const std::int64_t now = seen.place.time_us;
@@ -167,6 +182,7 @@ void Acks::refuse(std::uint16_t node, const Observation& seen, const Net& ack, s
   } else if (best == nullptr) {
     if (context_.half_heard(node)) return context_.needs_host(node, seen.place);
     severity = context_.on_line(node, context_.without_ever(kNobody, now));
+    meant_ack(node, ack);
     said.text = "An ack to " + text_of(ack.dest) + " of number " +
                 number(static_cast<std::uint64_t>(acked)) +
                 ", which no message that came to this node had.";
@@ -237,6 +253,13 @@ void Acks::delivered(std::uint16_t node, const Observation& seen,
     if (best == nullptr || rank(arrived) > rank(*best) || older) best = &arrived;
   }
   if (best == nullptr) {
+    for (std::size_t i = 0; i < ring.size(); ++i) {  // What it was made of is not missing as well.
+      Arrived& arrived = ring.oldest(i);
+      if (arrived.net.src != received.src || arrived.net.app_id != received.app_id) continue;
+      if (arrived.delivers == ReqId::kNone || arrived.delivered > 0) continue;
+      arrived.delivers = ReqId::kNone;
+      break;
+    }
     // Messages to a base station from other islands pass where no log and no tap is read.
     const Device& device = context_.device(node);
     const bool by_peis = device.role == machine::Role::kBaseStation &&
@@ -334,6 +357,7 @@ void Acks::missing_ack(std::uint16_t node, Arrived& arrived, std::int64_t now_us
   if (now_us <= due_us || (device.whole && now_us <= due_us + queued_us(node, arrived))) return;
   --owed_[node];
   arrived.must_ack = false;
+  if (lacks_delivery(node, arrived)) return;  // One cause; it is said by that.
   // A radio frame of the node may have escaped; a serial line is seen whole.
   const bool by_radio =
       device.role == machine::Role::kMote ||
@@ -366,24 +390,34 @@ bool Acks::delivered_before(std::uint16_t node, const Arrived& arrived) {
   return false;
 }
 
+// Returns whether by the node's log a message came for its application, which did not get it yet.
+bool Acks::lacks_delivery(std::uint16_t node, const Arrived& arrived) {
+  const Device& device = context_.device(node);
+  return arrived.delivers != ReqId::kNone && arrived.sure && arrived.delivered == 0 &&
+         device.application && device.hearing && context_.run.has_time &&
+         !delivered_before(node, arrived);
+}
+
 // Reports what by the node's log came for its application, which never got it.
 void Acks::missing_delivery(std::uint16_t node, Arrived& arrived, std::int64_t now_us) {
-  const Device& device = context_.device(node);
-  if (arrived.delivers == ReqId::kNone || !arrived.sure || arrived.delivered > 0) return;
-  if (!device.application || !device.hearing || !context_.run.has_time) return;
   const std::int64_t due_us = context_.due_us(node, arrived.whole_us);
-  if (now_us <= due_us) return;
+  if (now_us <= due_us || !lacks_delivery(node, arrived)) return;
   // A busy application, or what waits for it, may have filled the buffer.
   const bool held = context_.busy(node, arrived.whole_us, due_us);
-  if (delivered_before(node, arrived)) return;
+  const bool acked = arrived.acks > 0;
+  const bool nothing = arrived.ackable && !acked;
+  const bool cut = arrived.delivers == "N11-SHORT"_rule;
   context_.report(
-      arrived.delivers,
+      acked && !cut ? "T2-DELIVER"_rule : arrived.delivers,
       held || context_.crowded(node, arrived.place.time_us) ? Severity::kInconclusive
+      : cut                                                 ? Severity::kWeak
                                                             : Severity::kFail,
       arrived.place, node,
-      {"The node was given " + name_of(arrived.net) +
-           ", and its application did not get it within " + ms_text(context_.response_us()) + ".",
-       "A delivery.",
+      {"The node was given " + name_of(arrived.net) + (acked ? ", acked it" : "") +
+           ", and its application did not get it within " + ms_text(context_.response_us()) +
+           (nothing ? ", nor its sender an ack." : ".") +
+           (cut ? " It ended after its nbytes." : ""),
+       nothing ? "A delivery and an ack." : "A delivery.",
        {}});
   arrived.delivers = ReqId::kNone;
 }

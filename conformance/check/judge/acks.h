@@ -105,6 +105,8 @@ class Acks {
   void close(std::uint16_t node, Arrived& arrived);
   void missing_ack(std::uint16_t node, Arrived& arrived, std::int64_t now_us, bool lives);
   void missing_delivery(std::uint16_t node, Arrived& arrived, std::int64_t now_us);
+  bool lacks_delivery(std::uint16_t node, const Arrived& arrived);
+  void meant_ack(std::uint16_t node, const Net& ack);
   std::int64_t queued_us(std::uint16_t node, const Arrived& arrived);
   bool delivered_before(std::uint16_t node, const Arrived& arrived);
   void judge_order(std::uint16_t node, const Observation& seen, const Arrived& arrived);
