@@ -85,8 +85,12 @@ void Forwarding::heard_on_serial(std::uint16_t sink, std::uint16_t base, const O
   } else if (route.requirement == "N7-FOREIGN"_rule) {
     passing.forbidden = "N7-FOREIGN"_rule;
     passing.weak = true;
+  } else if (net.dest == machine::Address{line->island, line->am}) {
+    passing.forbidden = "N7-DELIVER"_rule;
   }
   passing.sure = surely_received;
+  passing.cut =
+      context_.device(sink).whole && seen.frame.payload.size() < rubicon::NetMsgView::kMaxSizeBytes;
   // A log says what was received.
   passing.owes = onward && net.sound && net.reliable <= 1 && !line->deaf &&
                  net.dest.pid != machine::kBroadcastPid;
@@ -239,11 +243,33 @@ void Forwarding::expire_early(Line& line, std::int64_t now_us) {
 }
 
 void Forwarding::unheard(Line& line, const Passing& early) {
+  Passing* meant = nullptr;  // What came and waits, and this may have been made of.
+  for (std::size_t i = 0; i < line.up.size() && meant == nullptr; ++i) {
+    Passing& passing = line.up.oldest(i);
+    const bool alike =
+        passing.net.dest == early.net.dest && begins_with(early.net, passing.net) &&
+        (passing.net.src == early.net.src || passing.net.seq_num == early.net.seq_num);
+    const bool waits = passing.passed == 0 && passing.forbidden == ReqId::kNone &&
+                       passing.place.time_us <= early.place.time_us;
+    if (waits && alike) meant = &passing;
+  }
   const bool began =
       context_.options.start_cold || early.place.time_us - context_.run.start_us > kStartUs;
   const bool complete = context_.options.sniffer_complete && began;
+  const Severity severity = complete ? Severity::kFail : Severity::kInconclusive;
+  if (meant != nullptr && complete) {
+    if (meant->owed) --line.owed_up;
+    meant->owed = false;
+    meant->passed = 1;
+    context_.report("N6-CONTENT"_rule, severity, early.place, line.sink,
+                    {"The sink forwards " + name_of(early.net) + "; what it received was " +
+                         name_of(meant->net) + ".",
+                     "Addresses, reliable, number and payload as they were heard.",
+                     {}});
+    return;
+  }
   context_.report(
-      "N6-ONCE"_rule, complete ? Severity::kFail : Severity::kInconclusive, early.place, line.sink,
+      "N6-ONCE"_rule, severity, early.place, line.sink,
       {"The sink puts " + name_of(early.net) + " on its serial line; nobody was heard sending it.",
        "A message that a mote sent.",
        {}});
@@ -251,14 +277,16 @@ void Forwarding::unheard(Line& line, const Passing& early) {
 
 void Forwarding::pass_down(Line& line, Passing& passing, const Observation& seen, const Net& net) {
   if (passing.forbidden != ReqId::kNone) {
-    const bool weak = passing.weak;
+    const bool malformed = passing.forbidden == "N11-NBYTES"_rule;
     context_.report(
-        passing.forbidden, weak ? Severity::kWeak : Severity::kFail, seen.place, line.sink,
+        passing.forbidden, passing.weak ? Severity::kWeak : Severity::kFail, seen.place, line.sink,
         {"The sink of island " + number(line.island) + " radiates " + name_of(net) +
-             (weak ? "."
-                   : ", whose nbytes is " + number(passing.net.nbytes) + " while " +
-                         number(passing.net.payload.size()) + " bytes came."),
-         weak ? "Another island's messages are not radiated." : "A malformed message is dropped.",
+             (malformed ? ", whose nbytes is " + number(passing.net.nbytes) + " while " +
+                              number(passing.net.payload.size()) + " bytes came."
+                        : "."),
+         malformed      ? "A malformed message is dropped."
+         : passing.weak ? "Another island's messages are not radiated."
+                        : "It is for the sink itself, whose application gets it.",
          {}});
   } else if (seen.frame.dest != passing.am_dest) {
     context_.report(
@@ -287,7 +315,7 @@ bool Forwarding::sent_on_radio(std::uint16_t sink, const Observation& seen, cons
   for (std::size_t i = 0; i < line->down.size(); ++i) {
     Passing& passing = line->down.newest(i);
     if (!same_message(passing.net, net)) {
-      const bool close = passing.net.seq_num == net.seq_num && passing.net.src == net.src;
+      const bool close = resembles(*line, passing, net);
       if (close && near == nullptr) near = &passing;
       continue;
     }
@@ -365,6 +393,7 @@ bool Forwarding::relayed(Line& line, const Observation& seen, const Net& net) {
 void Forwarding::overdue(std::uint16_t sink, std::int64_t now_us) {
   Line* const line = find(sink);
   if (line == nullptr) return;
+  if (line->early.size() > 0) expire_early(*line, now_us);  // It may be what is missing.
   if (line->owed_up > 0) overdue_up(*line, now_us);
   if (line->owed_down > 0) overdue_down(*line, now_us);
 }
@@ -372,6 +401,26 @@ void Forwarding::overdue(std::uint16_t sink, std::int64_t now_us) {
 void Forwarding::showed_life(std::uint16_t sink, std::int64_t now_us) {
   Line* const line = find(sink);
   if (line != nullptr && line->owed_down > 0) overdue_down(*line, now_us);
+}
+
+// Returns whether a message was made of one that came: it has its source and number, or, by a log
+// of the sink in which that one still waits, one of these and all the rest.
+bool Forwarding::resembles(const Line& line, const Passing& came, const Net& net) const {
+  const bool source = came.net.src == net.src;
+  const bool numbered = came.net.seq_num == net.seq_num;
+  if (source && numbered) return true;
+  return context_.device(line.sink).hearing && came.owed && (source || numbered) &&
+         came.net.dest == net.dest && equal(came.net.payload, net.payload);
+}
+
+bool Forwarding::alters(std::uint16_t sink, const Net& net) {
+  Line* const line = find(sink);
+  if (line == nullptr || !context_.device(sink).hearing) return false;
+  for (std::size_t i = 0; i < line->down.size(); ++i) {
+    const Passing& passing = line->down.newest(i);
+    if (passing.owed && passing.net.src != net.src && resembles(*line, passing, net)) return true;
+  }
+  return false;
 }
 
 bool Forwarding::came_up(std::uint16_t sink, const Net& net) {
@@ -415,7 +464,7 @@ void Forwarding::refuse_down(Line& line, const Observation& seen, const Net& net
   Passing* best = nullptr;
   for (std::size_t i = 0; i < line.down.size(); ++i) {
     Passing& passing = line.down.newest(i);
-    if (passing.net.seq_num != net.seq_num || passing.net.src != net.src) continue;
+    if (!resembles(line, passing, net)) continue;
     if (best == nullptr || best->passed > 0) best = &passing;
   }
   Said said;
@@ -477,7 +526,9 @@ void Forwarding::overdue_down(Line& line, std::int64_t now_us) {
     const bool open = !passing.sure || elsewhere || crowded(line, passing, Link::kRadio);
     const Severity severity =
         open ? Severity::kInconclusive : context_.without(line.sink, passing.place.time_us, now_us);
-    context_.report("N7-RADIO"_rule, context_.on_line(line.sink, severity), passing.place,
+    const Severity its = context_.on_line(line.sink, severity);
+    context_.report(passing.cut ? "N11-SHORT"_rule : "N7-RADIO"_rule,
+                    passing.cut && its == Severity::kFail ? Severity::kWeak : its, passing.place,
                     line.sink,
                     {(passing.sure ? "The sink confirmed " : "Nothing proves that the sink took ") +
                          name_of(passing.net) +
@@ -492,9 +543,9 @@ void Forwarding::overdue_down(Line& line, std::int64_t now_us) {
 void Forwarding::finish(std::int64_t end_us) {
   for (Line& line : lines_) {
     // At its end a log of what the sink was given needs no sign of life.
+    expire_early(line, end_us + context_.options.skew_us + 1);
     if (context_.device(line.sink).hearing && line.owed_up > 0) overdue_up(line, end_us);
     if (context_.device(line.sink).hearing && line.owed_down > 0) overdue_down(line, end_us);
-    expire_early(line, end_us + context_.options.skew_us + 1);
     note_stale(context_, line.sink, "N6-CONTENT"_rule, line.stale,
                "On the serial line nbytes says ");
   }

@@ -24,6 +24,7 @@ struct Passing {
   bool owed = false;               ///< Received, and not yet passed on.
   bool owes = false;               ///< It is to be passed on, if it was received.
   bool sure = true;                ///< The reception is proven.
+  bool cut = false;                ///< It came without the bytes after its payload.
   bool twin = false;               ///< Another one of the same content is around.
   std::uint8_t copies = 1;         ///< Times that it may have been received.
   std::uint8_t passed = 0;
@@ -45,6 +46,8 @@ class Forwarding {
   /// Returns whether the same message came down the sink's serial line, or one that may be its, and
   /// was not yet radiated.
   bool came_down(std::uint16_t sink, const Net& net);
+  /// Returns whether by a log of the sink one came down and waits that differs in its source alone.
+  bool alters(std::uint16_t sink, const Net& net);
   /// Returns whether the same message was heard by the sink's radio, and was not yet passed on.
   bool came_up(std::uint16_t sink, const Net& net);
   /// Judges a message on its serial line that is not the sink's own.
@@ -113,6 +116,7 @@ class Forwarding {
   void pass_up(Line& line, Passing& passing, const Observation& seen);
   void pass_down(Line& line, Passing& passing, const Observation& seen, const Net& net);
   void refuse_up(Line& line, const Observation& seen, const Net& net);
+  bool resembles(const Line& line, const Passing& came, const Net& net) const;
   void refuse_down(Line& line, const Observation& seen, const Net& net);
   void expire_early(Line& line, std::int64_t now_us);
   void overdue_up(Line& line, std::int64_t now_us);
