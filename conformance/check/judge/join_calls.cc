@@ -28,21 +28,35 @@ void JoinCalls::begin_life(std::uint16_t mote) {
   calls_[mote].logged = logged;
 }
 
-void JoinCalls::request(std::uint16_t mote, const Observation& seen, const Request& request) {
+bool JoinCalls::request(std::uint16_t mote, const Observation& seen, const Request& request) {
   Calls& calls = calls_[mote];
   calls.asks = false;
+  const std::optional<std::uint16_t> before = std::exchange(calls.number, request.seq_num);
+  const bool fresh = std::exchange(calls.fresh, false);
   const std::vector<MoteHypothesis>& set = std::as_const(motes_).set(mote);
   if (calls.logged && calls.open == 0 && set.size() == 1 && !set[0].unknown &&
       set[0].join.phase == Phase::kOutside) {
     context_.report("J1-CALLED"_rule, Severity::kFail, seen.place, mote,
                     {"A join_request without a joinIsland call.", "Silence.", {}});
   }
+  const bool as_member = calls.last && calls.open > 0 && !set.empty() &&
+                         set.back().join.phase == Phase::kMember &&
+                         calls.called.time_us > set.back().accepted_us;
   // Only the last call is open; what an earlier one left in a buffer cannot have waited for the
   // line.
   const std::int64_t called_us = calls.called.time_us;
   if (!calls.last || calls.open != 1 || seen.node.empty() ||
       context_.due_us(mote, called_us) != called_us + context_.response_us()) {
-    return;
+    return as_member;
+  }
+  if (fresh && before == request.seq_num) {
+    context_.report("J1-SEQ"_rule, Severity::kWeak, seen.place, mote,
+                    {"The first join_request of a joinIsland call has number " +
+                         number(request.seq_num) + ", as had those of the call before.",
+                     "Another number, which no late reply fits.",
+                     {}});
+  } else if (fresh && before) {
+    context_.findings.kept("J1-SEQ"_rule);
   }
   if (calls.last->descriptor == request.descriptor) {
     context_.findings.kept("J1-REQUEST"_rule);
@@ -52,12 +66,14 @@ void JoinCalls::request(std::uint16_t mote, const Observation& seen, const Reque
                      "The descriptor of the call.",
                      {}});
   }
+  return as_member;
 }
 
 void JoinCalls::called(std::uint16_t mote, const Observation& seen,
                        const machine::JoinIsland& call) {
   Calls& calls = calls_[mote];
   ends(mote, seen.place.time_us);
+  calls.fresh = calls.open == 0;
   // A member, and one whose earlier call is open, refuses at once.
   calls.refusable =
       calls.open > 0 || std::ranges::any_of(motes_.set(mote), [](const MoteHypothesis& h) {
@@ -116,6 +132,10 @@ void JoinCalls::told(std::uint16_t mote, const Observation& seen, const machine:
   Said said;
   said.hypotheses = motes_.explanations(before, "");
   if (joined.success) {
+    for (MoteHypothesis& h : set) {
+      const bool own = joined.address.devid == context_.device(mote).am;
+      if (h.void_offer && own) h.join.address.devid = joined.address.devid;
+    }
     std::erase_if(set, [&](const MoteHypothesis& h) {
       if (h.unaccepted) return true;
       return !h.unknown && (h.join.phase != Phase::kMember || h.join.address != joined.address);
@@ -131,6 +151,7 @@ void JoinCalls::told(std::uint16_t mote, const Observation& seen, const machine:
                        {}});
       return;
     }
+    motes_.judge_offer(mote, seen.place, set);
     const bool late = judge_late(mote, seen, set);
     for (MoteHypothesis& h : set) h.told = true;
     if (!set.empty()) {
@@ -244,11 +265,16 @@ void JoinCalls::judge_member(std::uint16_t mote, const MoteHypothesis& h, std::i
   const std::int64_t from = again ? calls.called.time_us : over_us;
   if (end_us <= context_.due_us(mote, from)) return;
   context_.report(
-      again ? "J8-JOINED"_rule : "J5-SUCCESS"_rule, Severity::kFail, calls.called, mote,
-      {again ? std::string("joinIsland of a mote that is joined ended without an event.")
-             : "The mote accepted the address " + text_of(h.join.address) +
-                   " and its application is told nothing.",
-       again ? "joined(FAIL), at once." : "joined(" + text_of(h.join.address) + ", SUCCESS).",
+      again    ? "J8-JOINED"_rule
+      : h.told ? "J5-ONCE"_rule
+               : "J5-SUCCESS"_rule,
+      Severity::kFail, calls.called, mote,
+      {again    ? std::string("joinIsland of a mote that is joined ended without an event.")
+       : h.told ? std::string("A joinIsland call ended without an event of its own.")
+                : "The mote accepted the address " + text_of(h.join.address) +
+                      " and its application is told nothing.",
+       again || h.told ? "joined(FAIL), at once."
+                       : "joined(" + text_of(h.join.address) + ", SUCCESS).",
        {}});
 }
 

@@ -17,8 +17,9 @@ class JoinCalls {
   JoinCalls(Context& context, MoteJoins& motes, std::size_t devices);
 
   void begin_life(std::uint16_t mote);
-  /// Judges a request by the calls. Called before MoteJoins::request().
-  void request(std::uint16_t mote, const Observation& seen, const Request& request);
+  /// Judges a request by the calls. Called before MoteJoins::request(). Returns whether one of
+  /// them, of a mote that was a member, asked for it.
+  bool request(std::uint16_t mote, const Observation& seen, const Request& request);
   void called(std::uint16_t mote, const Observation& seen, const machine::JoinIsland& call);
   void told(std::uint16_t mote, const Observation& seen, const machine::Joined& joined);
   void radio_set(std::uint16_t mote, bool on);
@@ -34,6 +35,8 @@ class JoinCalls {
     bool waits = false;      ///< It came while another one ran.
     bool asks = false;       ///< It owes a join_request.
     bool radio_off = false;  ///< By its application.
+    std::optional<std::uint16_t> number;  ///< Of the last request.
+    bool fresh = false;                   ///< The last call, of a mote with none open, sent none.
   };
 
   void ends(std::uint16_t mote, std::int64_t end_us);

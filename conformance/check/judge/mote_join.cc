@@ -28,6 +28,10 @@ std::string ack_text(const AckJoin& ack) {
 
 }  // namespace
 
+bool is_void(const Reply& reply, std::uint16_t am) {
+  return machine::is_reserved(reply.island) || reply.mote != am;
+}
+
 MoteJoins::MoteJoins(Context& context, std::size_t devices) : context_(context), motes_(devices) {
   for (std::size_t i = 0; i < devices; ++i) {
     MoteHypothesis start;
@@ -90,7 +94,8 @@ bool MoteJoins::next_request(const MoteHypothesis& h, std::uint16_t id, std::int
   return any;
 }
 
-void MoteJoins::request(std::uint16_t mote, const Observation& seen, const Request& request) {
+void MoteJoins::request(std::uint16_t mote, const Observation& seen, const Request& request,
+                        bool as_member) {
   MoteWatch& watch = motes_[mote];
   const Device& device = context_.device(mote);
   const std::int64_t now = seen.place.time_us;
@@ -116,7 +121,7 @@ void MoteJoins::request(std::uint16_t mote, const Observation& seen, const Reque
     next_request(h, device.am, now, request, next_);
   }
   if (next_.empty()) {
-    refuse_request(mote, seen, request);
+    refuse_request(mote, seen, request, as_member);
     return;
   }
   context_.findings.kept("J8-PERIOD"_rule);
@@ -136,8 +141,8 @@ void MoteJoins::link_told(std::uint16_t mote, std::int64_t now_us) {
   }
 }
 
-void MoteJoins::refuse_request(std::uint16_t mote, const Observation& seen,
-                               const Request& request) {
+void MoteJoins::refuse_request(std::uint16_t mote, const Observation& seen, const Request& request,
+                               bool as_member) {
   MoteWatch& watch = motes_[mote];
   const std::int64_t now = seen.place.time_us;
   // The furthest hypothesis is the latest state that the mote can have been in.
@@ -150,8 +155,14 @@ void MoteJoins::refuse_request(std::uint16_t mote, const Observation& seen,
   const bool sure = same || context_.device(mote).whole;
   Severity severity = sure ? Severity::kFail : Severity::kInconclusive;
   const std::int64_t period = context_.join_period_us();
+  // A timer that runs on keeps its beat. Of calls a log of the application tells.
+  const std::int64_t beat =
+      (h.last_request_us - h.first_request_us) / std::max(1, h.join.requests - 1);
+  const bool again = same && h.join.phase == Phase::kJoining &&
+                     !context_.device(mote).application &&
+                     now - h.last_request_us > std::max(period, 2 * beat) + context_.response_us();
   if (h.join.phase == Phase::kMember) {
-    rule = "J5-STOP"_rule;
+    rule = as_member ? "J8-JOINED"_rule : "J5-STOP"_rule;
     // A link ack on the air alone may not have come (decision 102).
     if (!h.sent && !h.told && !h.linked) severity = Severity::kInconclusive;
     said.text = "A join_request with number " + number(request.seq_num) +
@@ -161,6 +172,13 @@ void MoteJoins::refuse_request(std::uint16_t mote, const Observation& seen,
     said.text = "A join_request " + ms_text(now - h.last_request_us) + " after the one before it.";
     said.expected = "At least " + ms_text(period) + " between them (" +
                     ms_text(context_.early_us()) + " less is tolerated).";
+  } else if (again) {
+    rule = "J1-SEQ"_rule;
+    severity = Severity::kWeak;
+    said.text = "A join_request with the number of the " + number(h.join.requests) +
+                " before it, " + ms_text(now - h.last_request_us) +
+                " after the last of these: no timer of that call still runs.";
+    said.expected = "A new number for a new joinIsland call.";
   } else {
     rule = "J8-LIMIT"_rule;
     if (h.renumbered) severity = Severity::kInconclusive;
@@ -172,7 +190,7 @@ void MoteJoins::refuse_request(std::uint16_t mote, const Observation& seen,
   context_.report(rule, severity, seen.place, mote, std::move(said));
   // Go on from what was seen: the call runs, and this was its latest request.
   MoteHypothesis next = h;
-  if (h.join.phase == Phase::kMember && same) {
+  if (h.join.phase == Phase::kMember && (same || as_member)) {
     next.last_request_us = now;
     watch.set.assign(1, next);
     return;
@@ -180,10 +198,10 @@ void MoteJoins::refuse_request(std::uint16_t mote, const Observation& seen,
   next.join.phase = Phase::kJoining;
   next.join.seq_num = request.seq_num;
   next.join.descriptor = request.descriptor;
-  if (!same) next.join.requests = 0;
+  if (!same || again) next.join.requests = 0;
   ++next.join.requests;
   next.last_request_us = now;
-  if (!same) next.first_request_us = now;
+  if (!same || again) next.first_request_us = now;
   watch.set.assign(1, next);
 }
 
@@ -219,6 +237,7 @@ void MoteJoins::reply(std::uint16_t mote, const Observation& seen, std::uint32_t
     if (!chooses) heard.accepted_us = now;
     heard.reply = index;
     heard.acks_seen = 0;
+    heard.void_offer = is_void(reply, device.am);
     if (!surely_received || chooses) next_.push_back(h);
     next_.push_back(heard);
   }
@@ -239,7 +258,8 @@ void MoteJoins::keep(MoteWatch& watch, std::vector<MoteHypothesis>& next, std::u
              other.join.seq_num == h.join.seq_num && other.join.requests == h.join.requests &&
              other.join.address == h.join.address && other.join.sink_devid == h.join.sink_devid &&
              other.acks_seen == h.acks_seen && other.first_request_us == h.first_request_us &&
-             other.confirmed == h.confirmed && other.sent == h.sent;
+             other.confirmed == h.confirmed && other.sent == h.sent &&
+             other.void_offer == h.void_offer;
     });
     if (same == watch.set.end()) {
       watch.set.push_back(h);
@@ -293,8 +313,10 @@ void MoteJoins::ack_join(std::uint16_t mote, const Observation& seen, const AckJ
   MoteWatch& watch = motes_[mote];
   next_.clear();
   for (const MoteHypothesis& h : watch.set) {
-    if (why_not_ack(h, seen, ack) != ReqId::kNone) continue;
     MoteHypothesis next = h;
+    // Of such an offer it may have taken the island alone.
+    if (h.void_offer && ack.src.devid == seen.frame.src) next.join.address.devid = ack.src.devid;
+    if (why_not_ack(next, seen, ack) != ReqId::kNone) continue;
     if (h.unknown) {
       next.join.phase = Phase::kMember;
       next.join.address = ack.src;
@@ -313,6 +335,7 @@ void MoteJoins::ack_join(std::uint16_t mote, const Observation& seen, const AckJ
     refuse_ack(mote, seen, ack);
     return;
   }
+  judge_offer(mote, seen.place, next_);
   const std::uint8_t count = next_[0].acks_seen;
   context_.findings.kept(count > 1 ? "J4-REPEAT"_rule : "J4-CONTENT"_rule);
   context_.findings.kept("J4-SEQ"_rule);
@@ -324,6 +347,18 @@ void MoteJoins::ack_join(std::uint16_t mote, const Observation& seen, const AckJ
   }
   watch.wrong_reply.reset();
   keep(watch, next_, mote, seen);
+}
+
+void MoteJoins::judge_offer(std::uint16_t mote, const Place& at, std::vector<MoteHypothesis>& set) {
+  if (set.empty() || !std::ranges::all_of(set, &MoteHypothesis::void_offer)) return;
+  Reply offer;
+  parse_reply(context_.run.seen[set.back().reply].frame.payload, offer);
+  context_.report("J4-ADDRESS"_rule, Severity::kWeak, at, mote,
+                  {"The mote accepts the join_reply to its request " + number(offer.seq_num) +
+                       ", which offers " + text_of({offer.island, offer.mote}) + ".",
+                   "It ignores an offer to another TinyOS id, or of a reserved island.",
+                   {}});
+  for (MoteHypothesis& h : set) h.void_offer = false;
 }
 
 void MoteJoins::refuse_ack(std::uint16_t mote, const Observation& seen, const AckJoin& ack) {

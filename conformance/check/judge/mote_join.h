@@ -68,6 +68,7 @@ struct MoteHypothesis {
   bool linked = false;           ///< By its log the mote surely heard that.
   std::int64_t acked_us = 0;     ///< The last ack_join.
   bool unaccepted = false;       ///< It acked what it could not accept.
+  bool void_offer = false;       ///< It accepted what was not offered to it (J4-ADDRESS).
   bool told = false;             ///< Its application got joined(SUCCESS).
   bool sent = false;             ///< It sent a net_msg, so in its own view it is a member.
 };
@@ -79,12 +80,17 @@ struct MoteWatch {
   Place wrong_place;
 };
 
+/// Returns whether the mote of that address is to ignore such an offer (J4-ADDRESS).
+bool is_void(const Reply& reply, std::uint16_t am);
+
 class MoteJoins {
  public:
   MoteJoins(Context& context, std::size_t devices);
 
   void begin_life(std::uint16_t mote);
-  void request(std::uint16_t mote, const Observation& seen, const Request& request);
+  /// Judges a request; a member's if a call of joinIsland asked for it `as_member`.
+  void request(std::uint16_t mote, const Observation& seen, const Request& request,
+               bool as_member = false);
   void reply(std::uint16_t mote, const Observation& seen, std::uint32_t index, const Reply& reply,
              bool surely_received);
   void ack_join(std::uint16_t mote, const Observation& seen, const AckJoin& ack, bool confirmed);
@@ -94,6 +100,9 @@ class MoteJoins {
   std::vector<MoteHypothesis>& set(std::uint16_t mote) { return motes_[mote].set; }
   /// Notes what the link told the mote until `now_us`, by its log.
   void link_told(std::uint16_t mote, std::int64_t now_us);
+  /// Reports that the mote took an offer that was void, if by all that is possible it did, and lets
+  /// it be a member there.
+  void judge_offer(std::uint16_t mote, const Place& at, std::vector<MoteHypothesis>& set);
   /// Returns whether the mote was offered what its request had not asked for.
   bool stray_offer(std::uint16_t mote) const { return motes_[mote].wrong_reply.has_value(); }
   /// Returns at which expiry of its timer a call may fail first (decision 101).
@@ -118,7 +127,8 @@ class MoteJoins {
 
   bool next_request(const MoteHypothesis& h, std::uint16_t id, std::int64_t now_us,
                     const Request& request, std::vector<MoteHypothesis>& out);
-  void refuse_request(std::uint16_t mote, const Observation& seen, const Request& request);
+  void refuse_request(std::uint16_t mote, const Observation& seen, const Request& request,
+                      bool as_member);
   std::uint16_t sink_of(std::uint16_t island) const;
   ReqId why_not_ack(const MoteHypothesis& h, const Observation& seen, const AckJoin& ack) const;
   void refuse_ack(std::uint16_t mote, const Observation& seen, const AckJoin& ack);
