@@ -25,7 +25,16 @@ void Announcements::report(std::uint16_t sink_device, const Observation& seen, c
          "From " + text_of(joined.address) + " to " + text_of(to) + ", reliable 0.",
          {}});
   }
-  announce(*sink, seen.place, joined.address, joined.descriptor, false);
+  // With a wrong address inside it is still the report of the member that it comes from.
+  const bool inside = owes(*sink, joined.address.devid) || !owes(*sink, net.src.devid);
+  announce(*sink, seen.place, inside ? joined.address : net.src, joined.descriptor, false);
+}
+
+// Returns whether by all that is possible the sink owes the report of that mote.
+bool Announcements::owes(const SinkWatch& sink, std::uint16_t mote_am) {
+  const auto found = sink.motes.find(mote_am);
+  return found != sink.motes.end() && !found->second.set.empty() &&
+         std::ranges::all_of(found->second.set, &SinkHypothesis::owes_report);
 }
 
 void Announcements::told(std::uint16_t sink_device, const Observation& seen,
@@ -43,7 +52,7 @@ void Announcements::announce(SinkWatch& sink, const Place& at, machine::Address 
   PairWatch& watch = joins_.pair(sink, address.devid);
   const ReqId content = notice ? "J6-ADD"_rule : "J6-CONTENT"_rule;
   if (address.pid != sink.island) {
-    const ReqId rule = sink.island_set ? "N9-SET"_rule : content;
+    const ReqId rule = SinkJoins::wrong_island(sink, address.pid, content);
     // SET_ISLAND_ID may have escaped, or found the line switched off.
     const Severity severity = sink.island_sure ? Severity::kFail : Severity::kInconclusive;
     context_.report(rule, context_.on_line(sink.device, severity), at, sink.device,

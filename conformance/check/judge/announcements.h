@@ -37,6 +37,7 @@ class Announcements {
 
   void announce(SinkWatch& sink, const Place& at, machine::Address address,
                 const machine::Descriptor& descriptor, bool notice);
+  static bool owes(const SinkWatch& sink, std::uint16_t mote_am);
   void refuse_report(SinkWatch& sink, PairWatch& watch, const Place& at,
                      const machine::Admission& announced, bool notice);
   /// Reports each serial_joined that is overdue; `end`: no frame of the sink comes any more.

@@ -148,7 +148,16 @@ bool JoinWatch::still_owed(std::uint16_t node, const Debt& debt) {
     return !h.unknown && std::find(h.owed_seq.begin(), end, debt.seq_num) != end;
   };
   const std::vector<SinkHypothesis>& set = pair->second.set;
+  if (pair->second.cut_off) return std::ranges::any_of(set, owes);
   return !set.empty() && std::all_of(set.begin(), set.end(), owes);
+}
+
+// Returns whether a sink owes it to a mote that it should have forgotten with its former island.
+bool JoinWatch::forgets(std::uint16_t node, const Debt& debt) {
+  SinkWatch* const sink = debt.owes == Owes::kReply ? sinks_.find(node) : nullptr;
+  const auto pair =
+      sink == nullptr ? decltype(sink->motes.end()){} : sink->motes.find(debt.mote_am);
+  return sink != nullptr && pair != sink->motes.end() && pair->second.cut_off;
 }
 
 void JoinWatch::settle(std::uint16_t node, std::int64_t now_us, bool end) {
@@ -207,6 +216,16 @@ void JoinWatch::missing(std::uint16_t node, const Debt& debt, Severity severity)
                        {}});
       return;
     case Owes::kReply:
+      if (forgets(node, debt)) {
+        context_.report("N9-MEMBERS"_rule, severity == Severity::kFail ? Severity::kWeak : severity,
+                        cause.place, node,
+                        {"The sink " + proof + " the join_request " + number(debt.seq_num) +
+                             " of mote " + number(debt.mote_am) +
+                             ", which it listed under its former island, and does not answer it.",
+                         "It forgets its members with its island: a join_reply " + within,
+                         {}});
+        return;
+      }
       context_.report(
           debt.overtaken ? "J9-INTERLEAVE"_rule : "J3-REPLY"_rule, severity, cause.place, node,
           {"The sink " + proof + " the join_request " + number(debt.seq_num) + " of mote " +

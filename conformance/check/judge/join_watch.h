@@ -52,6 +52,7 @@ class JoinWatch {
   bool waits(std::uint16_t node) const;
   void owe(std::uint16_t node, const Debt& debt);
   bool still_owed(std::uint16_t node, const Debt& debt);
+  bool forgets(std::uint16_t node, const Debt& debt);
   void settle(std::uint16_t node, std::int64_t now_us, bool end);
   void missing(std::uint16_t node, const Debt& debt, Severity severity);
   bool crowded(std::uint16_t node, const Debt& debt) const;

@@ -10,6 +10,15 @@ namespace rubric::check {
 using machine::Admission;
 using machine::JoinSink;
 
+namespace {
+
+bool surely_lists(const PairWatch& pair) {
+  const auto lists = [](const SinkHypothesis& h) { return !h.unknown && h.member; };
+  return !pair.set.empty() && std::ranges::all_of(pair.set, lists);
+}
+
+}  // namespace
+
 SinkJoins::SinkJoins(Context& context) : context_(context) {
   for (std::size_t i = 0; i < context.who.devices.size(); ++i) {
     const Device& device = context.who.devices[i];
@@ -68,6 +77,7 @@ void SinkJoins::begin_life(std::uint16_t sink) {
   if (!device.hearing) return;  // A capture does not show with which island it begins.
   watch->island = device.island;
   watch->former_island = 0;
+  watch->ignored = -1;
   watch->island_set = false;
 }
 
@@ -92,11 +102,23 @@ void SinkJoins::set_island(std::uint16_t sink, std::uint16_t island, const Place
   SinkHypothesis unknown;
   unknown.unknown = true;
   for (auto& [am, pair] : watch->motes) {
+    pair.cut_off = surely_lists(pair);
     pair.set.assign(1, unknown);
     pair.report_due = false;
   }
   watch->debts = 0;
   watch->reported_us = -1;
+}
+
+void SinkJoins::configured(std::uint16_t sink, const machine::Frame& frame) {
+  SinkWatch* const watch = find(sink);
+  const auto config = rubicon::ConfigView::parse(frame.payload);
+  if (watch != nullptr && config) watch->ignored = config->value();
+}
+
+ReqId SinkJoins::wrong_island(const SinkWatch& sink, std::uint16_t other, ReqId otherwise) {
+  if (sink.ignored == other) return "N9-OTHER"_rule;
+  return sink.island_set ? "N9-SET"_rule : otherwise;
 }
 
 // Returns whether the sink may hear it. A sink with a log of what it was given hears nothing else.
@@ -216,10 +238,32 @@ void SinkJoins::close_unanswered(std::uint16_t mote_am, Unanswered& unanswered) 
        {}});
 }
 
+// Returns whether by some hypothesis the sink owes the mote a reply with that number.
+bool SinkJoins::owes(SinkWatch& sink, std::uint16_t mote_am, std::uint16_t seq_num) {
+  const auto found = sink.motes.find(mote_am);
+  return found != sink.motes.end() &&
+         std::ranges::any_of(found->second.set, [seq_num](const SinkHypothesis& h) {
+           const auto end = h.owed_seq.begin() + h.owed;
+           return std::find(h.owed_seq.begin(), end, seq_num) != end;
+         });
+}
+
 void SinkJoins::reply(std::uint16_t sink_device, const Observation& seen, const Reply& reply) {
   SinkWatch* const sink = find(sink_device);
   if (sink == nullptr) return;
-  const std::uint16_t am = seen.frame.dest;
+  const bool astray = seen.frame.dest != reply.mote && owes(*sink, reply.mote, reply.seq_num) &&
+                      !owes(*sink, seen.frame.dest, reply.seq_num);
+  const std::uint16_t am = astray ? reply.mote : seen.frame.dest;
+  if (astray) {
+    context_.report(
+        "J3-DEST"_rule,
+        context_.without_mote(seen.frame.dest, context_.run.start_us, seen.place.time_us),
+        seen.place, sink_device,
+        {"The join_reply to request " + number(reply.seq_num) + " of mote " + number(am) +
+             " goes to AM address " + number(seen.frame.dest) + ".",
+         "AM address " + number(am) + ", which asked.",
+         {}});
+  }
   PairWatch& watch = pair(*sink, am);
   for (auto& [other, unanswered] : unanswered_) {
     if (other == am) {
@@ -232,7 +276,7 @@ void SinkJoins::reply(std::uint16_t sink_device, const Observation& seen, const 
   }
   if (sink->island == 0) sink->island = reply.island;
   if (reply.island != sink->island) {
-    const ReqId rule = sink->island_set ? "N9-SET"_rule : "J3-ADDRESS"_rule;
+    const ReqId rule = wrong_island(*sink, reply.island, "J3-ADDRESS"_rule);
     // SET_ISLAND_ID may have escaped, or found the line switched off.
     const Severity severity = sink->island_sure ? Severity::kFail : Severity::kInconclusive;
     context_.report(rule, context_.on_line(sink_device, severity), seen.place, sink_device,
@@ -295,6 +339,7 @@ void SinkJoins::reply(std::uint16_t sink_device, const Observation& seen, const 
     keep(*sink, watch, next_, seen.place);
   }
   watch.answered = true;
+  watch.cut_off = false;
   watch.answered_seq = reply.seq_num;
 }
 
@@ -358,7 +403,8 @@ void SinkJoins::refuse_reply(SinkWatch& sink, PairWatch& watch, const Observatio
                 number(reply.seq_num) + ").";
     said.expected = "A reply to the AM address that asked.";
   } else if (h.member && watch.asked && reply.seq_num == watch.request_seq &&
-             (watch.request_listed || watch.answered_seq != reply.seq_num)) {
+             (watch.request_listed || watch.answered_seq != reply.seq_num ||
+              watch.request.time_us > watch.ack.time_us)) {
     rule = "J2-LISTED"_rule;
     // A capture does not show that a sink lost its power, and with it its list.
     severity = watch.ack.time_us < sink.behind_us ? Severity::kInconclusive : Severity::kFail;
@@ -465,10 +511,7 @@ void SinkJoins::keep(SinkWatch& sink, PairWatch& watch, std::vector<SinkHypothes
 
 std::size_t SinkJoins::listed(const SinkWatch& sink) const {
   std::size_t count = 0;
-  for (const auto& [am, watch] : sink.motes) {
-    const auto lists = [](const SinkHypothesis& h) { return !h.unknown && h.member; };
-    if (!watch.set.empty() && std::all_of(watch.set.begin(), watch.set.end(), lists)) ++count;
-  }
+  for (const auto& [am, watch] : sink.motes) count += surely_lists(watch) ? 1 : 0;
   return count;
 }
 

@@ -84,6 +84,7 @@ struct PairWatch {
   ReqId ignored_ack = ReqId::kNone;  ///< Why the last one must have been ignored.
   bool report_due = false;           ///< Surely owed since `ack`, and not yet complained about.
   bool request_listed = false;       ///< The last request surely came while it was listed.
+  bool cut_off = false;              ///< It was listed when the sink's island became another.
 };
 
 struct SinkWatch {
@@ -92,6 +93,7 @@ struct SinkWatch {
   bool island_set = false;  ///< SET_ISLAND_ID was seen.
   bool island_sure = true;  ///< It surely arrived, if so.
   std::uint16_t former_island = 0;
+  std::int32_t ignored = -1;  ///< The value of the last config message that changes nothing.
   std::int64_t island_set_us = 0;
   std::unordered_map<std::uint16_t, PairWatch> motes;  ///< By AM address.
   bool has_clock = false;                              ///< From the last reply:
@@ -113,6 +115,10 @@ class SinkJoins {
 
   void begin_life(std::uint16_t sink);
   void set_island(std::uint16_t sink, std::uint16_t island, const Place& at, bool sure);
+  /// Notes a config message that changes nothing.
+  void configured(std::uint16_t sink, const machine::Frame& frame);
+  /// Returns the rule that the sink breaks by being of island `other`.
+  static ReqId wrong_island(const SinkWatch& sink, std::uint16_t other, ReqId otherwise);
   void request(std::uint16_t mote_device, const Observation& seen, const Request& request,
                std::uint16_t surely_received_by);
   void reply(std::uint16_t sink, const Observation& seen, const Reply& reply);
@@ -147,6 +153,7 @@ class SinkJoins {
 
   /// Adds that the sink may have forgotten the mote, if so much silence was possible.
   void doubt(const Device& sink, PairWatch& watch, const Place& now) const;
+  static bool owes(SinkWatch& sink, std::uint16_t mote_am, std::uint16_t seq_num);
   void judge_clock(SinkWatch& sink, const Observation& seen, const Reply& reply);
   void refuse_reply(SinkWatch& sink, PairWatch& watch, const Observation& seen, const Reply& reply);
 
