@@ -35,6 +35,11 @@ void InterfaceWatch::called(std::uint16_t device, const Observation& seen) {
     node.left.reset();
     return;
   }
+  if (const auto* const get = std::get_if<machine::GetInterface>(seen.call)) {
+    Interface* const interface = find(node, get->link);
+    if (interface != nullptr) interface->asked = seen.place;
+    return;
+  }
   const auto* const set = std::get_if<machine::SetInterface>(seen.call);
   Interface* const interface = set == nullptr ? nullptr : find(node, set->link);
   if (interface == nullptr) return;
@@ -59,8 +64,10 @@ void InterfaceWatch::told(std::uint16_t device, const Observation& seen) {
     return;
   }
   const auto* const state = std::get_if<machine::InterfaceState>(seen.notice);
-  const Interface* const interface = state == nullptr ? nullptr : find(node, state->link);
-  if (interface == nullptr || !interface->on) return;
+  Interface* const interface = state == nullptr ? nullptr : find(node, state->link);
+  if (interface == nullptr) return;
+  interface->asked.reset();
+  if (!interface->on) return;
   if (state->on == *interface->on) return context_.findings.kept("N10-STATE"_rule);
   const std::string what = state->link == Link::kRadio ? "radio" : "serial interface";
   context_.report("N10-STATE"_rule, Severity::kFail, seen.place, device,
@@ -126,6 +133,15 @@ void InterfaceWatch::finish(std::int64_t end_us) {
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     const auto device = static_cast<std::uint16_t>(i);
     const Node& node = nodes_[i];
+    for (const Interface& interface : node.interfaces) {
+      // Only a whole log surely has the answer.
+      if (!interface.asked || !context_.device(device).whole) continue;
+      if (end_us <= context_.due_us(device, interface.asked->time_us)) continue;
+      context_.report("N10-STATE"_rule, Severity::kFail, *interface.asked, device,
+                      {"The application asked whether an interface is on, and was told nothing.",
+                       "Its state.",
+                       {}});
+    }
     const bool busy = !context_.busy_times(device).empty();
     if (!node.awaited || busy || end_us - node.accepted.time_us <= context_.response_us()) continue;
     const Severity severity = context_.device(device).hearing

@@ -35,7 +35,8 @@ class InterfaceWatch {
   struct Interface {
     std::optional<bool> on;  ///< Nothing: a node that runs since before the log.
     std::int64_t changed_us = 0;
-    bool again = false;  ///< Switched on again, and not yet seen to send.
+    bool again = false;          ///< Switched on again, and not yet seen to send.
+    std::optional<Place> asked;  ///< For its state, without an answer yet.
   };
   struct Node {
     std::array<Interface, 2> interfaces;  ///< Radio and serial.

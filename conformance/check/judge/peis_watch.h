@@ -33,6 +33,11 @@ class PeisWatch {
   /// Takes a message from PEIS to `base`, whose serial interface may be off.
   void given(std::uint16_t base, const Observation& seen, const Net& net, machine::Address own,
              bool serial_off);
+  /// Returns whether a message that came to `base`, from its sink or from PEIS, waits to be passed
+  /// on.
+  bool came(std::uint16_t base, const Net& net) {
+    return match(bases_[base].up, net) != nullptr || match(bases_[base].down, net) != nullptr;
+  }
   /// Judges a message that `base` sends down to its sink and that is not its own.
   void went_down(std::uint16_t base, const Observation& seen, const Net& net);
   /// Notes a call that sets the island, which `base` must tell its sink.

@@ -44,8 +44,9 @@ void Originals::called(std::uint16_t node, const Observation& seen, const machin
   const Device& device = context_.device(node);
   const bool here = call.dest.pid == machine::kLocalPid || call.dest.pid == own.pid;
   // What goes to every island, or to the node itself, may stay (decisions 114, 131).
-  const bool free = own.pid == 0 || call.dest.pid == machine::kBroadcastPid ||
-                    (here && call.dest.devid == own.devid);
+  const bool self = own.pid != 0 && here &&
+                    (call.dest.devid == own.devid || call.dest.devid == machine::kLocalDevid);
+  const bool free = own.pid == 0 || call.dest.pid == machine::kBroadcastPid || self;
   const bool base = device.role == Role::kBaseStation;
   const std::uint16_t sink = base ? device.partner : node;
   const bool line = device.whole || (sink != kNobody && context_.device(sink).shows_line());
@@ -55,8 +56,8 @@ void Originals::called(std::uint16_t node, const Observation& seen, const machin
   const Link up = base ? Link::kPeis : device.role == Role::kSink ? Link::kSerial : Link::kRadio;
   const bool to_mote = here && call.dest.devid != machine::kNullDevid;
   const bool may_stay = free || !shown || moved_[node];
-  calls_[node].push(
-      {&call, {}, {}, seen.place, may_stay, to_mote ? down : up, may_stay, seen.place.time_us});
+  calls_[node].push({&call, {}, {}, seen.place, may_stay, to_mote ? down : up, may_stay,
+                     seen.place.time_us, self});
 }
 
 void Originals::used(std::uint16_t node, std::uint16_t number) {
@@ -101,10 +102,18 @@ void Originals::ends(std::uint16_t node, std::int64_t end_us, const InterfaceWat
     const std::int64_t since = std::max(one.place.time_us, on_us);
     if (on_us < 0 || end_us <= context_.due_us(node, since, one.line)) continue;
     if (interfaces.awaits(node) == one.result) continue;  // Said by N10-ON.
-    context_.report("N2-ONCE"_rule, Severity::kFail, one.place, node,
+    const bool base = device.role == Role::kBaseStation;
+    const bool waited =
+        !base && context_.busy(node, one.place.time_us, one.place.time_us, one.line);
+    context_.report(base && one.line == Link::kSerial ? "N8-SERIAL"_rule
+                    : base                            ? "N8-PEIS"_rule
+                    : waited                          ? "N2-QUEUE"_rule
+                                                      : "N2-ONCE"_rule,
+                    Severity::kFail, one.place, node,
                     {"send accepted the message to " + text_of(one.send->dest) + " with number " +
-                         number(*one.result) + ", and it never left.",
-                     "That message, once.",
+                         number(*one.result) + (waited ? " while the line was busy" : "") +
+                         ", and it never left.",
+                     waited ? "That message, when the line is free." : "That message, once.",
                      {}});
   }
 }
@@ -122,14 +131,42 @@ void Originals::told(std::uint16_t node, const Observation& seen,
     return;
   }
   call.result = result.seq_num;
-  if (result.seq_num == machine::kNoSeq) judge_refused(node, seen, call);
+  const std::size_t waiting = this->waiting(node);
+  call.full = result.seq_num == machine::kNoSeq && waiting >= kBufferOut;
+  if (result.seq_num == machine::kNoSeq) judge_refused(node, seen, call, waiting);
+  if (call.send->data.size() > machine::kAppDataMax && result.seq_num != machine::kNoSeq) {
+    context_.report("N1-SIZE"_rule, Severity::kFail, seen.place, node,
+                    {"send returned " + number(result.seq_num) + " for a message of " +
+                         number(call.send->data.size()) + " bytes.",
+                     "0xFFFF.",
+                     {}});
+    call.free = true;  // All else about it has this cause.
+  }
+  if (call.self && !call.left && result.seq_num != machine::kNoSeq) {
+    context_.report("N4-SELF"_rule, Severity::kWeak, seen.place, node,
+                    {"send returned " + number(result.seq_num) + " for a message to " +
+                         text_of(call.send->dest) + ", the node itself.",
+                     "0xFFFF.",
+                     {}});
+  }
   if (call.left) judge_result(node, seen, call);
+}
+
+// Returns how many messages of its application a node accepted and has not sent yet.
+std::size_t Originals::waiting(std::uint16_t node) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < calls_[node].size(); ++i) {
+    const Call& one = calls_[node].newest(i);
+    if (one.result && *one.result != machine::kNoSeq && !one.left) ++count;
+  }
+  return count;
 }
 
 // Says that send refused a message although fewer of its application's messages waited than a
 // buffer holds. Forwarded ones may have filled it, and awaited acks the room for acks, which nobody
 // states.
-void Originals::judge_refused(std::uint16_t node, const Observation& seen, const Call& call) {
+void Originals::judge_refused(std::uint16_t node, const Observation& seen, const Call& call,
+                              std::size_t waiting) {
   // These it must or may refuse (decision 114).
   const machine::Send& send = *call.send;
   const std::uint16_t devid = send.dest.devid;
@@ -137,12 +174,7 @@ void Originals::judge_refused(std::uint16_t node, const Observation& seen, const
   const bool all = devid == machine::kBroadcastDevid;
   const bool refusable = send.data.size() > machine::kAppDataMax || (all ? send.reliable : nobody);
   if (!context_.run.all_stated || call.free || refusable) return;
-  std::size_t waiting = 0;
-  for (std::size_t i = 0; i < calls_[node].size(); ++i) {
-    const Call& one = calls_[node].newest(i);
-    if (one.result && *one.result != machine::kNoSeq && !one.left) ++waiting;
-  }
-  if (waiting >= kBufferOut) return;
+  if (call.full) return;
   bool awaits = false;
   for (std::size_t i = 0; i < sent_[node].size(); ++i) {
     const Sent& sent = sent_[node].newest(i);
@@ -200,11 +232,12 @@ void Originals::judge_late(std::uint16_t node, const Observation& seen, const Ca
 // Judges the number of a message that left and the one that send returned for it.
 void Originals::judge_result(std::uint16_t node, const Observation& seen, const Call& call) {
   if (*call.left == *call.result) return context_.findings.kept("N1-SEQ"_rule);
-  context_.report("N1-SEQ"_rule, Severity::kFail, seen.place, node,
-                  {"send returned " + number(*call.result) + " for the message to " +
-                       text_of(call.send->dest) + " with number " + number(*call.left) + ".",
-                   "The number of the message.",
-                   {}});
+  context_.report(
+      call.full ? "N1-FULL"_rule : "N1-SEQ"_rule, Severity::kFail, seen.place, node,
+      {"send returned " + number(*call.result) + " for the message to " + text_of(call.send->dest) +
+           " with number " + number(*call.left) + ".",
+       call.full ? "A message that send refused is never sent." : "The number of the message.",
+       {}});
 }
 
 bool Originals::asked(std::uint16_t node, const Net& net) const {
@@ -220,8 +253,9 @@ bool Originals::asked(std::uint16_t node, const Net& net) const {
 }
 
 // Judges what a message wraps by the calls of its application, which a log shows.
-void Originals::judge_wrap(std::uint16_t node, const Observation& seen, const Net& net, Link link) {
-  if (!net.sound || net.is_ack() || net.trans_id == component::kSynChannel) return;
+Originals::Asked Originals::judge_wrap(std::uint16_t node, const Observation& seen, const Net& net,
+                                       Link link) {
+  if (!net.sound || net.is_ack() || net.trans_id == component::kSynChannel) return Asked::kUnknown;
   // Up its line a sink may send old bytes behind the data, and count them, as release 1.0 does.
   const bool more = link == Link::kSerial && context_.device(node).role == Role::kSink;
   auto& calls = calls_[node];
@@ -237,25 +271,37 @@ void Originals::judge_wrap(std::uint16_t node, const Observation& seen, const Ne
     if (elsewhere && call.reliable == (net.reliable == 1)) rule = "N3-LOCAL"_rule;
     if (dest != net.dest || call.reliable != (net.reliable == 1)) continue;
     asked = true;
+    // What is cut is said by N1-SIZE.
+    const bool cut = call.data.size() > machine::kAppDataMax && same == nullptr &&
+                     (!one.result || *one.result == net.seq_num);
     const std::size_t size = more ? std::min(call.data.size(), net.body().size()) : SIZE_MAX;
+    if (cut && net.body().size() <= call.data.size() && call.app_id == net.app_id) {
+      same = &one;
+      break;
+    }
     if (net.trans_id != component::kConnless || call.app_id != net.app_id ||
         !equal(call.data, net.body().first(std::min(size, net.body().size())))) {
       continue;
     }
-    if (!one.result || *one.result == net.seq_num || same == nullptr) same = &one;
-    if (one.result == net.seq_num) break;
+    const bool its = one.result == net.seq_num;
+    const bool waits = same != nullptr && !same->result && !same->left;  // For its first message.
+    if (its && one.left && waits) break;
+    if (!one.result || its || same == nullptr) same = &one;
+    if (its) break;
   }
   if (same != nullptr) {
-    const bool left = same->left == net.seq_num && same->result == net.seq_num;
-    if (left && context_.device(node).whole) {
+    // A link may repeat a frame, but not with another number.
+    const bool left = same->left && same->left == same->result;
+    if (left && (context_.device(node).whole || same->left != net.seq_num) && !calls.full()) {
       context_.report(
           net.reliable == 1 ? "T3-RESEND"_rule : "N2-ONCE"_rule, Severity::kFail, seen.place, node,
           {name_of(net) + " is sent again, " + ms_text(seen.place.time_us - same->left_us) +
                " after the first time, and no call of its application asked for that.",
            "Each message once; resending is the application's decision.",
            {}});
-      return;
+      return Asked::kNo;
     }
+    const bool again = same->left.has_value();
     same->left_us = seen.place.time_us;
     same->left = net.seq_num;
     judge_late(node, seen, *same, link);
@@ -265,9 +311,9 @@ void Originals::judge_wrap(std::uint16_t node, const Observation& seen, const Ne
       context_.left(node, link, seen.place, called_us, called_us, name_of(net));
     }
     if (same->result && !calls.full()) judge_result(node, seen, *same);
-    return;
+    return again ? Asked::kUnknown : Asked::kYes;
   }
-  if ((calls.size() == 0 && !context_.device(node).whole) || calls.full()) return;
+  if ((calls.size() == 0 && !context_.device(node).whole) || calls.full()) return Asked::kUnknown;
   // What was sent before the log began may have waited.
   const bool whole = context_.options.start_cold || begun_[node];
   if (!asked) {
@@ -276,7 +322,7 @@ void Originals::judge_wrap(std::uint16_t node, const Observation& seen, const Ne
                          number(net.reliable) + ".",
                      "What send was given, unchanged.",
                      {}});
-    return;
+    return Asked::kUnknown;
   }
   context_.report("T1-WRAP"_rule, whole ? Severity::kFail : Severity::kInconclusive, seen.place,
                   node,
@@ -285,21 +331,27 @@ void Originals::judge_wrap(std::uint16_t node, const Observation& seen, const Ne
                        ": no call of its application says so.",
                    "TRANSID CONNLESS, and the APPID and the data of the call of send.",
                    {}});
+  return Asked::kUnknown;
 }
 
 void Originals::sent(std::uint16_t node, const Observation& seen, const Net& net, Link link,
                      machine::Address own) {
   ++orders_[node];
   judge_content(node, seen, net);
-  judge_wrap(node, seen, net, link);
+  const Asked asked = judge_wrap(node, seen, net, link);
   judge_address(node, seen, net, link, own);
-  judge_number(node, seen, net);
+  judge_number(node, seen, net, asked);
   if (net.sound && net.trans_id == component::kSynChannel) judge_synaptic(node, seen, net);
   Sent sent;
   sent.net = net;
   sent.place = seen.place;
   sent.order = orders_[node];
   sent.called_us = seen.place.time_us;
+  for (std::size_t i = 0; i < sent_[node].size() && !sent.reused; ++i) {
+    const Sent& before = sent_[node].newest(i);
+    sent.reused = before.reused && before.net.seq_num == net.seq_num;
+  }
+  if (asked == Asked::kNo) sent.told = take_events(node, net.seq_num);
   for (std::size_t i = 0; i < calls_[node].size(); ++i) {
     const Call& call = calls_[node].newest(i);
     if (call.left != net.seq_num) continue;
@@ -341,12 +393,21 @@ void Originals::judge_content(std::uint16_t node, const Observation& seen, const
   }
 }
 
+//= N4-MOTE: On the radio a net_msg for a mote of the sender's own island is sent to that mote's AM
+//= address, a broadcast to AM address 0xFFFF.
+//= N4-SINK: A mote sends a net_msg for another island, or with devid NULL, to the AM address of its
+//= sink.
 void Originals::judge_address(std::uint16_t node, const Observation& seen, const Net& net,
                               Link link, machine::Address own) {
   const Device& device = context_.device(node);
-  // A message to the broadcast island may go anywhere (decision 114); one to oneself is not judged.
+  // A message to the broadcast island may go anywhere (decision 114).
   if (net.dest.pid == machine::kBroadcastPid || net.dest.pid == machine::kLocalPid) return;
   const Route route = machine::route_own({device.role, own, true, context_.sink_am}, net.dest);
+  if (route.requirement == "N4-SELF"_rule && net.trans_id != component::kSynChannel) {
+    context_.report(route.requirement, Severity::kWeak, seen.place, node,
+                    {"It sends " + name_of(net) + ", to itself.", "send refuses it.", {}});
+    return;
+  }
   const bool up = route.onward == Route::Onward::kSerial;
   if (device.role == Role::kSink && link == Link::kRadio && up) {
     // Its base station may have handed it down (decision 126).
@@ -382,18 +443,33 @@ void Originals::judge_address(std::uint16_t node, const Observation& seen, const
        {}});
 }
 
-void Originals::judge_number(std::uint16_t node, const Observation& seen, const Net& net) {
+// Returns how many events the last message with that number had, for a copy that takes its place;
+// if there is none, as if it had its event, as nobody asked for it.
+std::uint8_t Originals::take_events(std::uint16_t node, std::uint16_t number) {
+  Ring<Sent, kRoom>& ring = sent_[node];
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    Sent& sent = ring.newest(i);
+    if (sent.net.seq_num == number)
+      return std::exchange(sent.told, std::max<std::uint8_t>(sent.told, 1));
+  }
+  return 1;
+}
+
+void Originals::judge_number(std::uint16_t node, const Observation& seen, const Net& net,
+                             Asked asked) {
   const std::int64_t now = seen.place.time_us;
   Ring<Sent, kRoom>& ring = sent_[node];
   for (std::size_t i = 0; i < ring.size(); ++i) {
-    const Sent& before = ring.newest(i);
+    Sent& before = ring.newest(i);
     if (before.net.seq_num != net.seq_num) continue;
     const bool awaits =
         before.net.reliable == 1 && !before.acked && before.net.sound && !before.net.broadcast() &&
         before.net.trans_id == component::kConnless && seen.place.timed() && before.place.timed() &&
         now - before.place.time_us < context_.ack_timeout_us() - context_.early_us();
-    const bool same = same_message(before.net, net) && same_payload(before.net, net);
+    const bool same =
+        asked != Asked::kYes && same_message(before.net, net) && same_payload(before.net, net);
     if (awaits) {
+      before.reused = !same;
       // An ack that nobody captured would have ended the wait.
       const machine::Address dest = before.net.dest;
       const bool by_sink = dest.devid == context_.sink_am || dest.devid == machine::kNullDevid;
@@ -459,6 +535,7 @@ void Originals::close(std::uint16_t node, std::size_t newest, std::int64_t now_u
   Ring<Sent, kRoom>& ring = sent_[node];
   const Sent& sent = ring.newest(newest);
   if (!context_.device(node).application || !sent.place.timed() || sent.told > 0) return;
+  if (sent.reused) return;
   const bool awaits =
       sent.net.reliable == 1 && sent.net.sound && sent.net.trans_id == component::kConnless;
   if (!awaits || context_.profile().ack_timeout_ticks == 0) return;

@@ -19,6 +19,7 @@ struct Sent {
   bool acked = false;          ///< Its ack reached the node, or may have.
   std::int64_t given_us = -1;  ///< When its ack surely reached the node, by a log.
   std::uint8_t told = 0;       ///< receive_ack events, by a log.
+  bool reused = false;         ///< Its number was used again, so that events do not tell which.
   std::uint32_t order = 0;     ///< Among the frames of the node.
   std::int64_t called_us = 0;  ///< When its application asked for it; else when it left.
 };
@@ -34,6 +35,7 @@ class Originals {
               machine::Address own);
   /// Notes that the island of the node is now another one.
   void moved(std::uint16_t node) { moved_[node] = true; }
+  bool has_moved(std::uint16_t node) const { return moved_[node]; }
   /// Notes that a frame of the node has that number, whoever's message it is.
   void used(std::uint16_t node, std::uint16_t number);
   /// Notes that an interface is switched: while it is off what waits stays, or may be lost.
@@ -72,6 +74,8 @@ class Originals {
     machine::Link line = machine::Link::kRadio;  ///< By which it leaves.
     bool held = false;                           ///< An interface is off, or it need not leave.
     std::int64_t since_us = 0;                   ///< It may leave: the call, or its interface on.
+    bool self = false;                           ///< It is for the node itself.
+    bool full = false;                           ///< send refused it, as the buffer was full.
     std::int64_t left_us = -1;                   ///< When it left.
   };
 
@@ -83,11 +87,16 @@ class Originals {
   void judge_result(std::uint16_t node, const Observation& seen, const Call& call);
   void judge_late(std::uint16_t node, const Observation& seen, const Call& call,
                   machine::Link link);
-  void judge_refused(std::uint16_t node, const Observation& seen, const Call& call);
+  std::size_t waiting(std::uint16_t node);
+  void judge_refused(std::uint16_t node, const Observation& seen, const Call& call,
+                     std::size_t waiting);
   void judge_order(std::uint16_t node, const Observation& seen, const Call& later);
-  void judge_wrap(std::uint16_t node, const Observation& seen, const Net& net, machine::Link link);
+  /// Whether a call of its application asked for a message.
+  enum class Asked : std::uint8_t { kUnknown, kYes, kNo };
+  Asked judge_wrap(std::uint16_t node, const Observation& seen, const Net& net, machine::Link link);
+  std::uint8_t take_events(std::uint16_t node, std::uint16_t number);
   bool rightly_acked(std::uint16_t node, const Net& message);
-  void judge_number(std::uint16_t node, const Observation& seen, const Net& net);
+  void judge_number(std::uint16_t node, const Observation& seen, const Net& net, Asked asked);
 
   Context& context_;
   std::vector<Ring<Sent, kRoom>> sent_;

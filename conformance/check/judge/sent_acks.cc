@@ -45,9 +45,10 @@ void Originals::told(std::uint16_t node, const Observation& seen, const machine:
   const std::int64_t now = seen.place.time_us;
   Ring<Sent, kRoom>& ring = sent_[node];
   Sent* match = nullptr;
-  for (std::size_t i = 0; i < ring.size() && match == nullptr; ++i) {
+  for (std::size_t i = 0; i < ring.size() && (match == nullptr || match->told > 0); ++i) {
     Sent& sent = ring.newest(i);
-    if (sent.net.seq_num == ack.seq_num && sent.net.reliable == 1) match = &sent;
+    if (sent.net.seq_num != ack.seq_num || sent.net.reliable != 1) continue;
+    if (match == nullptr || sent.told == 0) match = &sent;
   }
   const std::string what = "receive_ack(" + std::string(ack.success ? "success" : "failure") +
                            ", number " + number(ack.seq_num) + ")";
@@ -68,6 +69,7 @@ void Originals::told(std::uint16_t node, const Observation& seen, const machine:
                      {}});
     return;
   }
+  if (match->reused) return;
   if (match->told++ > 0) {
     context_.report("T3-ONCE"_rule, Severity::kFail, seen.place, node,
                     {what + " again.", "One receive_ack for each message.", {}});
