@@ -1,15 +1,57 @@
 // Judges input channels: the data that come for them, and synData_received.
 #include <algorithm>
+#include <optional>
+#include <utility>
 
 #include "conformance/check/judge/synaptic_watch.h"
 
 namespace rubric::check {
+namespace {
+
+// Returns whether a call succeeded, by what it returned; nothing of another notice.
+std::optional<bool> succeeds(const machine::Notice& notice) {
+  if (const auto* made = std::get_if<machine::ChannelResult>(&notice)) return made->success;
+  if (const auto* done = std::get_if<machine::OperationResult>(&notice)) return done->success;
+  if (const auto* value = std::get_if<machine::InputValue>(&notice)) return value->success;
+  return {};
+}
+
+}  // namespace
 
 SynapticWatch::In* SynapticWatch::find_in(Node& node, machine::ChannelId id) {
   for (In& in : node.ins) {
     if (in.id == id) return &in;
   }
   return nullptr;
+}
+
+// The value that read_input_value tells is not judged: data may have been lost or be on their way.
+void SynapticWatch::told(std::uint16_t device, const Observation& seen,
+                         const machine::Notice& result) {
+  Node& node = nodes_[device];
+  if (!node.result || node.result->index() != result.index()) return;
+  const machine::Notice want = *std::exchange(node.result, std::nullopt);
+  const ReqId rule = node.result_rule;
+  // What else a call does is seen by the data; a channel that is not there may be unknown here.
+  const bool judged = rule == "S1-ID"_rule || rule == "S1-ENLARGE"_rule ||
+                      rule == "S1-LIMIT"_rule || rule == "S1-WRITE"_rule || rule == "S1-READ"_rule;
+  if (!judged || !context_.device(device).whole || !succeeds(want)) return;
+  const auto* const made = std::get_if<machine::ChannelResult>(&result);
+  const auto* const right = std::get_if<machine::ChannelResult>(&want);
+  // Who refuses a channel, as one that is no member may, refuses the calls for it, too.
+  const bool both = *succeeds(want) && *succeeds(result);
+  const bool other = both && made != nullptr && made->id != right->id;
+  const bool refusable = !*succeeds(want) && *succeeds(result);
+  if (!other && !refusable) return;
+  const auto name = [](machine::ChannelId id) {
+    return number(id >> 16) + "->" + number(id & 0xFFFF);
+  };
+  const std::string what =
+      made != nullptr ? "The call that creates a channel" : "A call that writes or reads a value";
+  context_.report(rule, Severity::kFail, seen.place, device,
+                  {what + (other ? " returns the id " + name(made->id) + "." : " succeeds."),
+                   other ? "The id " + name(right->id) + "." : "It is refused.",
+                   {}});
 }
 
 // Notes which inputs a call began or ended.

@@ -54,6 +54,7 @@ SynapticWatch::Out* SynapticWatch::find(Node& node, machine::ChannelId id) {
 
 void SynapticWatch::called(std::uint16_t device, const Observation& seen, machine::Address own) {
   Node& node = nodes_[device];
+  node.result.reset();
   const bool creates = std::holds_alternative<machine::CreateChannel>(*seen.call);
   // The clock may be set before there is a channel.
   const bool steps = std::holds_alternative<machine::SetTimeStep>(*seen.call);
@@ -76,6 +77,11 @@ void SynapticWatch::called(std::uint16_t device, const Observation& seen, machin
   context_.actions.clear();
   machine::call_synaptic(node.channels, config, own, machine::ticks_of(seen.place.time_us),
                          *seen.call, context_.actions);
+  for (const machine::Action& action : context_.actions.all()) {
+    if (action.what != machine::Action::What::kNotify) continue;
+    node.result = context_.actions.notice_of(action);
+    node.result_rule = action.requirement;
+  }
   if (const auto* create = std::get_if<machine::CreateChannel>(seen.call)) {
     const machine::ChannelId id = machine::channel_id(create->peer.devid, config.id);
     std::erase_if(node.unknowns, [&](const Unknown& one) { return one.id == id; });
@@ -383,11 +389,15 @@ void SynapticWatch::settle_outputs(std::uint16_t device, std::int64_t now_us) {
     if (now_us - since <= patience_us(device, first)) continue;
     // A started channel that was never written is only expected to send (decision 120).
     const bool expected = saves && first && out.wrote_us < 0;
-    const ReqId rule = expected ? "S3-FIRST"_rule : saves ? "S3-CHANGED"_rule : "S2-SEND"_rule;
+    const bool shifted = !first && node.restart_us > since;  // Perhaps the clock alone.
+    const ReqId rule = shifted    ? "S6-CLOCK"_rule
+                       : expected ? "S3-FIRST"_rule
+                       : saves    ? "S3-CHANGED"_rule
+                                  : "S2-SEND"_rule;
     Severity severity =
         context_.device(device).hearing ? Severity::kFail : context_.without(device, since, now_us);
     if (crowded(device, since, now_us)) severity = Severity::kInconclusive;
-    if (expected && severity == Severity::kFail) severity = Severity::kWeak;
+    if ((expected || shifted) && severity == Severity::kFail) severity = Severity::kWeak;
     Place at;
     at.time_us = since;
     context_.report(
@@ -426,8 +436,10 @@ void SynapticWatch::settle_at(std::uint16_t device, std::int64_t now_us) {
     if (now_us - since <= patience_us(device, in.told_us < 0)) continue;
     Place at;
     at.time_us = since;
+    const bool shifted = in.told_us >= 0 && node.restart_us > since;  // Perhaps the clock alone.
     context_.report(
-        "S2-SIGNAL"_rule, Severity::kFail, at, device,
+        shifted ? "S6-CLOCK"_rule : "S2-SIGNAL"_rule, shifted ? Severity::kWeak : Severity::kFail,
+        at, device,
         {"No synData_received of the channel from " + number(in.id >> 16) + " to " +
              number(in.id & 0xFFFF) + " for " + ms_text(now_us - since) + ".",
          "One at each tick, " + ms_text(machine::us_of(node.channels.period_ticks)) + " apart.",

@@ -29,6 +29,8 @@ class SynapticWatch {
   void owed(std::uint16_t node, const Observation& seen, const Net& net);
   /// Judges synData_received.
   void told(std::uint16_t node, const Observation& seen, const machine::SynDataReceived& data);
+  /// Judges what a call returned, by a log that has all of the node.
+  void told(std::uint16_t node, const Observation& seen, const machine::Notice& result);
   /// Judges what the node owes until now, by its log.
   void settle(std::uint16_t node, std::int64_t now_us);
   void finish(std::int64_t end_us);
@@ -104,6 +106,8 @@ class SynapticWatch {
     bool shifted = false;                     ///< That shifted the ticks, and was reported.
     std::vector<In> ins;
     machine::Synaptic channels;
+    std::optional<machine::Notice> result;  ///< What the last call has to return, and why.
+    ReqId result_rule = ReqId::kNone;
     std::int64_t step_us = -1;  ///< The last set_time_step.
     std::vector<Out> outs;
   };
