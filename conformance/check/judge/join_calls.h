@@ -32,9 +32,9 @@ class JoinCalls {
     std::optional<machine::JoinIsland> last;
     bool refusable = true;  ///< That one may fail at once.
     Place called;
-    bool waits = false;      ///< It came while another one ran.
-    bool asks = false;       ///< It owes a join_request.
-    bool radio_off = false;  ///< By its application.
+    bool waits = false;                   ///< It came while another one ran.
+    bool asks = false;                    ///< It owes a join_request.
+    bool radio_off = false;               ///< By its application.
     std::optional<std::uint16_t> number;  ///< Of the last request.
     bool fresh = false;                   ///< The last call, of a mote with none open, sent none.
   };

@@ -147,8 +147,8 @@ void Judge::radio(std::uint32_t index, const Observation& seen, const Mark& mark
       if (!parse_request(seen.frame.payload, request)) return;
       if (is(mark.device, Role::kMote)) {
         joins_.repeats(mark.device, seen.place.time_us);
-        join_calls_.request(mark.device, seen, request);
-        motes_.request(mark.device, seen, request);
+        const bool as_member = join_calls_.request(mark.device, seen, request);
+        motes_.request(mark.device, seen, request, as_member);
         joins_.asked(mark.device, index);
       }
       sinks_.request(mark.device, seen, request, sure_sink(index));
@@ -217,8 +217,7 @@ void Judge::replied(std::uint32_t index, const Observation& seen, const Mark& ma
     const bool only =
         context_.mote_of_am[seen.frame.dest] == mote && context_.next_of_am[mote] == kNobody;
     // Such an offer is to be ignored, as if it had not come (J4-ADDRESS).
-    const bool void_offer =
-        machine::is_reserved(reply.island) || reply.mote != who_.devices[mote].am;
+    const bool void_offer = is_void(reply, who_.devices[mote].am);
     const bool heard = given || (only && link_acked(run_, index));
     const bool sure = heard && !void_offer;
     motes_.reply(mote, seen, index, reply, sure);
@@ -280,6 +279,7 @@ void Judge::called(const Observation& seen, std::uint16_t device) {
 
 void Judge::told(const Observation& seen, std::uint16_t device) {
   interfaces_.told(device, seen);
+  synaptic_.told(device, seen, *seen.notice);
   if (const auto* joined = std::get_if<machine::Joined>(seen.notice)) {
     joins_.repeats(device, seen.place.time_us);
     if (is(device, Role::kMote)) join_calls_.told(device, seen, *joined);
@@ -360,9 +360,11 @@ void Judge::radio_net(std::uint32_t index, const Observation& seen, const Mark& 
   } else if (is(sender, Role::kSink)) {
     // A base station may hand its sink even the sink's own message (decision 126).
     const bool own = sinks_.is_own(sender, net.src, seen.place.time_us);
-    if (own && !forwarding_.came_down(sender, net)) {
+    const bool passes = forwarding_.came_down(sender, net) ||
+                        (forwarding_.alters(sender, net) && !originals_.asked(sender, net));
+    if (own && !passes) {
       own_message(sender, seen, net, machine::Link::kRadio, net.src);
-    } else {
+    } else if (passes || !forged(sender, seen, net, machine::Link::kRadio, address_of(sender))) {
       acks_.showed_life(sender, seen.place.time_us);
       const bool known = forwarding_.sent_on_radio(sender, seen, net);
       if (!known && !net.sound) originals_.judge_content(sender, seen, net);
@@ -405,61 +407,19 @@ void Judge::own_message(std::uint16_t node, const Observation& seen, const Net& 
   if (net.sound && net.trans_id == component::kSynChannel) synaptic_.sent(node, seen, net);
 }
 
-void Judge::mote_hears(std::uint16_t mote, const Observation& seen, const Mark& mark,
-                       const Net& net) {
-  const std::uint16_t am = who_.devices[mote].am;
-  const std::optional<machine::Address> own = motes_.address(mote);
-  // If its island is uncertain, anything for its devid may be for it.
-  const machine::Address presumed = own.value_or(machine::Address{net.dest.pid, am});
-  hears(mote, {Role::kMote, presumed, true, context_.sink_am}, machine::Link::kRadio, seen,
-        mark.device, net, mark.receiver == mote);
-}
-
-// Returns what a mote by its own log is to the messages that it hears.
-Judge::Standing Judge::standing(std::uint16_t node) const {
-  const Device& device = who_.devices[node];
-  if (!is(node, Role::kMote) || !device.hearing) return Standing::kMember;
-  const std::vector<MoteHypothesis>& set = motes_.set(node);
-  // It may have joined before the log.
-  if (std::ranges::any_of(set, &MoteHypothesis::unknown)) return Standing::kUnknown;
-  if (motes_.is_outside(node)) return Standing::kOutside;
-  // It need not see itself as a member before joined(SUCCESS) (decisions 102, 118).
-  const bool sure = motes_.address(node) && (!device.application || motes_.surely_member(node));
-  return sure ? Standing::kMember : Standing::kPerhaps;
-}
-
-void Judge::hears(std::uint16_t node, const machine::Router& router, machine::Link from,
-                  const Observation& seen, std::uint16_t sender, const Net& net, bool sure) {
-  if (router.own.pid == 0) return;  // A sink of which no island is known.
-  const machine::Route route = machine::route_received(router, from, net.dest, net.src);
-  if (!route.deliver && route.onward != machine::Route::Onward::kNowhere) return;
-  // A message to every island may be taken or ignored (decision 114).
-  const bool free = route.deliver || net.dest.pid == machine::kBroadcastPid;
-  const bool off = interfaces_.off(node, from, seen.place.time_us);
-  const Standing standing = this->standing(node);
-  ReqId forbidden = free ? ReqId::kNone : route.requirement;
-  if (standing == Standing::kOutside) forbidden = "J11-HEAR"_rule;
-  if (off) forbidden = "N10-OFF"_rule;
-  // So may one straight from a foreign mote (decision 116), and one for another island that a base
-  // station sends down to its sink (decision 126).
-  const bool radio = from == machine::Link::kRadio;
-  const bool straight = net.dest.pid != router.own.pid ||
-                        (radio && net.src.pid != net.dest.pid && !is(sender, Role::kSink) &&
-                         seen.frame.src != context_.sink_am) ||
-                        standing == Standing::kPerhaps || cut_on_line(node, seen);
-  // A base station need not deliver what is for all of its island (N8-DELIVER).
-  const bool owed = is(node, Role::kMote) ? motes_.surely_member(node)
-                                          : !is(node, Role::kBaseStation) ||
-                                                net.dest.devid != machine::kBroadcastDevid;
-  const bool on = !interfaces_.switched_off(node, from);
-  acks_.arrived(node, seen, sender, net,
-                {forbidden, forbidden == "N6-OTHER"_rule, sure && on, straight,
-                 standing == Standing::kUnknown, owed ? route.delivered : ReqId::kNone});
-  if (sure && !off && route.deliver) synaptic_.given(node, seen, net, on);
-  const bool exact = net.dest == router.own && owed && !straight && on && !off;
-  if (sure && exact && forbidden == ReqId::kNone && context_.options.start_cold) {
-    synaptic_.owed(node, seen, net);
-  }
+// Judges a message that only the node's own application can have asked for, under another name.
+// Returns whether it is one.
+bool Judge::forged(std::uint16_t node, const Observation& seen, const Net& net, machine::Link link,
+                   machine::Address own) {
+  if (own.pid == 0 || net.src == own || !originals_.asked(node, net)) return false;
+  if (originals_.has_moved(node)) return false;  // Nobody knows its island.
+  context_.report("N1-SRC"_rule, Severity::kFail, seen.place, node,
+                  {"The message to " + text_of(net.dest) + " that its application asked for has " +
+                       "src " + text_of(net.src) + ".",
+                   "src " + text_of(own) + ".",
+                   {}});
+  own_message(node, seen, net, link, own);
+  return true;
 }
 
 // Counts an ack at the originator of the acked message.
@@ -492,7 +452,7 @@ void Judge::serial(std::uint32_t index, const Observation& seen, const Mark& mar
     const machine::Address base = address_of(mark.device);
     if (!handed || !parse_net(seen.frame.payload, net)) return;
     if (net.src == base) return own_message(mark.device, seen, net, machine::Link::kSerial, base);
-    peis_.went_down(mark.device, seen, net);
+    handed_down(mark.device, seen, net, base);
     return;
   }
   if (const std::int32_t id = set_island_id(seen.frame); id >= 0 && seen.to_mote) {
@@ -505,6 +465,7 @@ void Judge::serial(std::uint32_t index, const Observation& seen, const Mark& mar
     forwarding_.set_island(sink, island, seen.place.time_us, sure);
     return;
   }
+  if (seen.to_mote && seen.frame.type == am::kConfig) sinks_.configured(sink, seen.frame);
   if (!seen.to_mote) announcements_.showed_life(mark.device, seen.place.time_us, true);
   Net net;
   if (seen.frame.type != am::kNet || !parse_net(seen.frame.payload, net)) return;
@@ -540,23 +501,18 @@ void Judge::up_serial(const Observation& seen, const Mark& mark, std::uint16_t s
     announcements_.report(sink, seen, net, joined);
   } else if (sinks_.is_own(sink, net.src, seen.place.time_us)) {
     own_message(sink, seen, net, machine::Link::kSerial, net.src);
-  } else {
+  } else if (forwarding_.came_up(sink, net) ||
+             !forged(sink, seen, net, machine::Link::kSerial, address_of(sink))) {
     acks_.showed_life(sink, seen.place.time_us);
     forwarding_.sent_on_serial(sink, seen, net);
   }
   base_station_hears(sink, seen, mark, net);
 }
 
-// A base station is given a message for sure where its own log says so.
-void Judge::base_station_hears(std::uint16_t sink, const Observation& seen, const Mark& mark,
-                               const Net& net) {
-  const std::uint16_t base = who_.devices[sink].partner;
-  if (base == kNobody) return;
-  const bool on = !interfaces_.switched_off(base, machine::Link::kSerial);
-  peis_.came_up(base, sinks_.island(sink), seen, net, seen.received && on);
-  hears(base,
-        {Role::kBaseStation, {sinks_.island(sink), machine::kNullDevid}, true, context_.sink_am},
-        machine::Link::kSerial, seen, sink, net, mark.receiver == base);
+void Judge::handed_down(std::uint16_t base, const Observation& seen, const Net& net,
+                        machine::Address own) {
+  if (!peis_.came(base, net) && forged(base, seen, net, machine::Link::kSerial, own)) return;
+  peis_.went_down(base, seen, net);
 }
 
 void Judge::down_serial(std::uint32_t index, const Observation& seen, const Mark& mark,
@@ -564,7 +520,7 @@ void Judge::down_serial(std::uint32_t index, const Observation& seen, const Mark
   const std::uint16_t island = sinks_.island(sink);
   const machine::Address base{island, machine::kNullDevid};
   if (net.src == base) own_message(mark.device, seen, net, machine::Link::kSerial, base);
-  if (net.src != base && !seen.received) peis_.went_down(mark.device, seen, net);
+  if (net.src != base && !seen.received) handed_down(mark.device, seen, net, base);
   const bool sure = !interfaces_.switched_off(sink, machine::Link::kSerial) &&
                     (serial_acked(run_, index) || mark.receiver == sink);
   const bool deaf = interfaces_.switched_off(sink, machine::Link::kRadio);
@@ -583,6 +539,7 @@ void Judge::peis(const Observation& seen, std::uint16_t base) {
   const machine::Address own = address_of(base);
   if (!seen.received) {
     originals_.used(base, net.seq_num);
+    if (!peis_.came(base, net) && forged(base, seen, net, machine::Link::kPeis, own)) return;
     const bool original = peis_.sent(base, seen, net, own);
     if (original) own_message(base, seen, net, machine::Link::kPeis, own);
     return;

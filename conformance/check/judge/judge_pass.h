@@ -49,6 +49,13 @@ class Judge {
   // Takes a message of the node's own.
   void own_message(std::uint16_t node, const Observation& seen, const Net& net, machine::Link link,
                    machine::Address own);
+  // Judges a message that only the node's own application can have asked for, under another name.
+  // Returns whether it is one.
+  bool forged(std::uint16_t node, const Observation& seen, const Net& net, machine::Link link,
+              machine::Address own);
+  // Takes what a base station, whose address is `own`, hands to its sink in another's name.
+  void handed_down(std::uint16_t base, const Observation& seen, const Net& net,
+                   machine::Address own);
   // Returns whether a message may be dropped as it is not whole (N11-SHORT).
   bool cut_on_line(std::uint16_t node, const Observation& seen) const {
     return who_.devices[node].whole && seen.kind == Observation::Kind::kSerial &&

@@ -56,8 +56,9 @@ void Originals::called(std::uint16_t node, const Observation& seen, const machin
   const Link up = base ? Link::kPeis : device.role == Role::kSink ? Link::kSerial : Link::kRadio;
   const bool to_mote = here && call.dest.devid != machine::kNullDevid;
   const bool may_stay = free || !shown || moved_[node];
-  calls_[node].push({&call, {}, {}, seen.place, may_stay, to_mote ? down : up, may_stay,
-                     seen.place.time_us, self});
+  Call& one = calls_[node].push(
+      {&call, {}, {}, seen.place, may_stay, to_mote ? down : up, may_stay, seen.place.time_us});
+  one.self = self;
 }
 
 void Originals::used(std::uint16_t node, std::uint16_t number) {

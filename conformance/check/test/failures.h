@@ -20,4 +20,19 @@ inline std::multiset<std::string> failures_of(const Report& report) {
   return out;
 }
 
+/// Returns the rules that a report finds broken, in order; of a SHOULD it says so. Tests have short
+/// messages on their serial lines, so that they can be read: that alone is not said.
+inline std::string broken_in(const Report& report) {
+  std::string out;
+  for (const Finding& finding : report.findings) {
+    const bool weak = finding.severity == Severity::kWeak;
+    if (finding.severity != Severity::kFail && !weak) continue;
+    if (finding.requirement == "N11-WHOLE"_rule) continue;
+    if (!out.empty()) out += " ";
+    out += reflect::requirement(finding.requirement).id;
+    if (weak) out += " (weak)";
+  }
+  return out;
+}
+
 }  // namespace rubric::check

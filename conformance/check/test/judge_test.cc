@@ -8,6 +8,7 @@
 #include <functional>
 
 #include "codec/reflect/requirements.h"
+#include "conformance/check/test/failures.h"
 #include "conformance/check/test/testing.h"
 
 namespace rubric::check {
@@ -69,7 +70,7 @@ std::string text_of(const Report& report, Severity least) {
 
 struct Fault {
   const char* name;
-  const char* found;  // Rules that fail, in order.
+  const char* found;  // Rules that are broken, in order.
   std::function<void(Script&)> make;
 };
 
@@ -88,6 +89,21 @@ const Fault kFaults[] = {
     {"sixth_request", "J8-LIMIT",
      [](Script& s) {
        for (int i = 0; i < 6; ++i) s.request(400 + 489 * i, 4, 300);
+     }},
+    {"same_number_in_a_new_call", "J1-SEQ (weak)",
+     [](Script& s) {
+       for (int i = 0; i < 5; ++i) s.request(400 + 489 * i, 4, 300);
+       s.request(3900, 4, 300);
+     }},
+    {"offer_to_another_id", "J3-ADDRESS J4-ADDRESS (weak)",
+     [](Script& s) {
+       s.request(400, 4, 300).reply(410, 11, 9, 300, 410, 4);
+       Payload p;
+       put(p, Address{11, 1});
+       put(p, Address{11, 9});
+       put16(p, 300);
+       put(p, kDescriptor);
+       s.radio(420, 4, 1, am::kAckJoin, p);
      }},
     {"member_asks_again", "J5-STOP", [](Script& s) { s.request(900, 2, 100); }},
     {"reply_with_another_number", "J3-SEQ",
@@ -196,6 +212,19 @@ const Fault kFaults[] = {
        s.net(420, 2, 1, update(2, 5)).net(425, 3, 1, update(3, 6));
        s.up(440, update(3, 6).forwarded()).up(455, update(2, 5).forwarded());
      }},
+    {"forwarded_with_another_number", "N6-CONTENT",
+     [](Script& s) {
+       NetFields net = update(2, 5);
+       s.net(420, 2, 1, net);
+       net.seq_num = 6;
+       s.up(435, net.forwarded());
+     }},
+    {"message_to_itself", "N4-SELF (weak)",
+     [](Script& s) {
+       NetFields net = update(2, 5);
+       net.dest = net.src;
+       s.net(420, 2, 2, net);
+     }},
     {"foreign_source_forwarded", "J11-SEND N6-COLLISION",
      [](Script& s) {
        NetFields net = update(66, 5);
@@ -235,7 +264,16 @@ const Fault kFaults[] = {
        net.size = 60;
        s.net(430, 1, 2, net, 11);
      }},
-    {"island_not_taken", "N9-SET N9-SET",
+    {"report_of_another_mote", "J6-CONTENT",
+     [](Script& s) {
+       s.request(400, 4, 300).reply(410, 11, 4, 300, 410);
+       s.ack_join(420, 11, 4, 300).link_ack().joined(440, 11, 4);
+       const Bytes whole = s.run.seen.back().frame.payload;
+       Payload p(whole.begin(), whole.end());
+       p[18] = 9;  // The devid inside.
+       s.run.seen.back().frame.payload = s.run.storage->keep(Bytes(p.data(), p.size()));
+     }},
+    {"island_not_taken", "N9-SET N9-SET N8-LOOP (weak)",
      [](Script& s) {
        s.serial(400, true, am::kConfig, {10, 0, 21}).confirm();
        s.request(420, 4, 300);
@@ -325,7 +363,7 @@ TEST_P(Faults, AreFoundByTheirRule) {
   const Report report = judge(script.run, strict());
   std::string all;
   for (const Finding& finding : report.findings) all += finding.text + "\n";
-  EXPECT_EQ(text_of(report, Severity::kFail), GetParam().found) << all;
+  EXPECT_EQ(broken_in(report), GetParam().found) << all;
 }
 
 TEST_P(Faults, AreAtMostInconclusiveOrTheSameWithoutKnowledge) {
@@ -347,6 +385,13 @@ TEST(Judge, NothingHasNothingWrong) {
   const Report report = judge(check::Run{}, strict());
   EXPECT_EQ(report.verdict, Verdict::kPass);
   EXPECT_EQ(report.frames, 0U);
+}
+
+// One timer that is slow is no new call.
+TEST(Judge, TheSixthRequestOfASlowTimerIsOneTooMany) {
+  Script script;
+  for (int i = 0; i < 6; ++i) script.request(1000 * i, 4, 300);
+  EXPECT_EQ(broken_in(judge(script.run, strict())), "J8-LIMIT");
 }
 
 TEST(Judge, TestersAreNotJudged) {

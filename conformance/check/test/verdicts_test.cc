@@ -5,6 +5,7 @@
 #include <iterator>
 #include <string>
 
+#include "conformance/check/test/failures.h"
 #include "conformance/check/test/testing_log.h"
 
 namespace rubric::check {
@@ -21,7 +22,7 @@ TEST(Verdicts, OfWholeLogs) {
     const std::string what = text.substr(colon + 2, begin - colon - 3);
     at = text.find("\n== ", begin);
     const std::size_t end = at == text.npos ? text.size() : at + 1;
-    EXPECT_EQ(found(text.substr(begin, end - begin), Severity::kInconclusive),
+    EXPECT_EQ(broken_in(judge_log(text.substr(begin, end - begin))),
               rules == "nothing" ? "" : rules)
         << what;
   }

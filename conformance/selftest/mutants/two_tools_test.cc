@@ -24,6 +24,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
+#include <fstream>
 #include <optional>
 #include <random>
 #include <set>
@@ -323,6 +324,51 @@ bool about(const suite::SuiteCase& one, const Mutant& mutant) {
   return std::ranges::any_of(mutant.requirements, [&](ReqId rule) {
     return std::ranges::find(one.rules, id_of(rule)) != one.rules.end();
   });
+}
+
+// Returns the rules in the first column of the table below a heading of the checker's page.
+std::set<std::string> listed_below(const std::string& heading) {
+  std::ifstream page("conformance/check/README.md");
+  std::set<std::string> out;
+  std::string line;
+  while (std::getline(page, line) && line != heading) {
+  }
+  for (bool table = false; std::getline(page, line) && !(table && line.empty());) {
+    if (!line.starts_with("| ")) continue;
+    table = true;
+    std::istringstream cell(line.substr(2, line.find(" |") - 2));
+    for (std::string rule; cell >> rule;) out.insert(rule.substr(0, rule.find(',')));
+  }
+  out.erase("rule");
+  return out;
+}
+
+// A rule that the judge never names is no use to whom it should tell of a broken node.
+TEST(TwoTools, EachRuleIsNamedInSomeLogOrListed) {
+  std::set<std::string> named;
+  for (const Mutant& mutant : named_mutants()) {
+    suite::testing::FakeAttachment attachment = attached(mutant.step, {});
+    for (const suite::SuiteCase& one : cases().all()) {
+      if (!about(one, mutant)) continue;
+      const suite::CaseRun run = run_one(one, attachment);
+      const auto report = judged(run, recordings(run, {}).front());
+      if (!report) continue;
+      for (const check::Finding& finding : report->findings) {
+        if (finding.severity != Severity::kNote) named.emplace(id_of(finding.requirement));
+      }
+    }
+  }
+  std::ifstream logs("conformance/check/test/testdata/whole_logs.txt");
+  for (std::string line; std::getline(logs, line);) {
+    if (!line.starts_with("== ")) continue;
+    std::istringstream rules(line.substr(3, line.find(':') - 3));
+    for (std::string rule; rules >> rule;) named.insert(rule);
+  }
+  std::set<std::string> never;
+  for (const reflect::Requirement& rule : reflect::requirements()) {
+    if (rule.roles != 0 && !named.contains(rule.id)) never.insert(rule.id);
+  }
+  EXPECT_EQ(never, listed_below("### Rules that are never named"));
 }
 
 using Clock = std::chrono::steady_clock;

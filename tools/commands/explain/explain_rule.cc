@@ -80,7 +80,7 @@ std::string places_text(const Requirement& rule, std::span<const RulePlace> plac
   if (out.empty()) return "";
   const bool of_behaviour = rule.roles != 0;
   if (of_behaviour && files[std::size(kParts) - 1].empty()) {
-    out += "    checker: none; golden traces alone try it\n";
+    out += "    checker: not by this name; see conformance/check/README.md\n";
   }
   return "  In the code:\n" + out;
 }

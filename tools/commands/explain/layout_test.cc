@@ -168,7 +168,7 @@ TEST(Explain, RuleOfBehaviour) {
   EXPECT_THAT(text, testing::EndsWith("  Cases: none\n"));
   const RulePlace unseen[] = {{"S1-ID", "conformance/machine/synaptic.cc"}};
   EXPECT_THAT(explain_rule({}, "S1-ID"_rule, {}, {}, unseen),
-              HasSubstr("    checker: none; golden traces alone try it\n"));
+              HasSubstr("    checker: not by this name; see conformance/check/README.md\n"));
   EXPECT_THAT(explain_rule({}, "T2-LOOP"_rule, {}), HasSubstr("For: mote, sink, base station;"));
 }
 

@@ -1,0 +1,96 @@
+// What a node may make of a message that comes to it: the part of the second pass that knows which
+// messages are for whom.
+#include <algorithm>
+
+#include "conformance/check/judge/judge_pass.h"
+
+namespace rubric::check {
+using machine::Role;
+
+void Judge::mote_hears(std::uint16_t mote, const Observation& seen, const Mark& mark,
+                       const Net& net) {
+  const std::uint16_t am = who_.devices[mote].am;
+  const std::optional<machine::Address> own = motes_.address(mote);
+  // If its island is uncertain, anything for its devid may be for it.
+  const machine::Address presumed = own.value_or(machine::Address{net.dest.pid, am});
+  hears(mote, {Role::kMote, presumed, true, context_.sink_am}, machine::Link::kRadio, seen,
+        mark.device, net, mark.receiver == mote);
+}
+
+// Returns what a mote by its own log is to the messages that it hears.
+Judge::Standing Judge::standing(std::uint16_t node) const {
+  const Device& device = who_.devices[node];
+  if (!is(node, Role::kMote) || !device.hearing) return Standing::kMember;
+  const std::vector<MoteHypothesis>& set = motes_.set(node);
+  // It may have joined before the log.
+  if (std::ranges::any_of(set, &MoteHypothesis::unknown)) return Standing::kUnknown;
+  if (motes_.is_outside(node)) return Standing::kOutside;
+  // It need not see itself as a member before joined(SUCCESS) (decisions 102, 118).
+  const bool sure = motes_.address(node) && (!device.application || motes_.surely_member(node));
+  return sure ? Standing::kMember : Standing::kPerhaps;
+}
+
+// Says of a message whether its delivery is owed, free or forbidden, by the rule of its route.
+//= N5-DELIVER: A mote delivers a net_msg, sent or sent on by a node of its island, whose dest is
+//= its island and its own devid or the broadcast devid.
+//= N5-FOREIGN: A mote ignores a net_msg whose dest.pid is another island; 0xFFFF, every island, may
+//= be delivered or ignored.
+//= N5-OTHER: A mote ignores a net_msg of its own island whose devid is another mote or NULL.
+//= N6-DELIVER: A sink delivers a net_msg from the radio, sent by a node of its island, whose dest
+//= is its island and its own devid or the broadcast devid.
+//= N7-DELIVER: A sink delivers a net_msg from serial for its island whose devid is its own or the
+//= broadcast devid.
+//= N8-DELIVER: A base station delivers a message with dest <its island, NULL> to its application.
+void Judge::hears(std::uint16_t node, const machine::Router& router, machine::Link from,
+                  const Observation& seen, std::uint16_t sender, const Net& net, bool sure) {
+  if (router.own.pid == 0) return;  // A sink of which no island is known.
+  const machine::Route route = machine::route_received(router, from, net.dest, net.src);
+  if (!route.deliver && route.onward != machine::Route::Onward::kNowhere) return;
+  // A message to every island may be taken or ignored (decision 114).
+  const bool free = route.deliver || net.dest.pid == machine::kBroadcastPid;
+  const bool off = interfaces_.off(node, from, seen.place.time_us);
+  const Standing standing = this->standing(node);
+  ReqId forbidden = free ? ReqId::kNone : route.requirement;
+  // What a sink hands up is for the base station, or for another island.
+  if (!free && is(node, Role::kBaseStation)) forbidden = "N8-DELIVER"_rule;
+  if (standing == Standing::kOutside) forbidden = "J11-HEAR"_rule;
+  if (off) forbidden = "N10-OFF"_rule;
+  // So may one straight from a foreign mote (decision 116), and one for another island that a base
+  // station sends down to its sink (decision 126).
+  const bool radio = from == machine::Link::kRadio;
+  const bool straight = net.dest.pid != router.own.pid ||
+                        (radio && net.src.pid != net.dest.pid && !is(sender, Role::kSink) &&
+                         seen.frame.src != context_.sink_am) ||
+                        standing == Standing::kPerhaps;
+  const bool cut = cut_on_line(node, seen);
+  // A base station need not deliver what is for all of its island (N8-DELIVER).
+  const bool owed = is(node, Role::kMote) ? motes_.surely_member(node)
+                                          : !is(node, Role::kBaseStation) ||
+                                                net.dest.devid != machine::kBroadcastDevid;
+  const bool on = !interfaces_.switched_off(node, from);
+  acks_.arrived(node, seen, sender, net,
+                {forbidden, forbidden == "N6-OTHER"_rule, sure && on, straight || cut,
+                 standing == Standing::kUnknown,
+                 !owed              ? ReqId::kNone
+                 : cut && !straight ? "N11-SHORT"_rule
+                                    : route.delivered});
+  if (sure && !off && route.deliver) synaptic_.given(node, seen, net, on);
+  const bool exact = net.dest == router.own && owed && !straight && !cut && on && !off;
+  if (sure && exact && forbidden == ReqId::kNone && context_.options.start_cold) {
+    synaptic_.owed(node, seen, net);
+  }
+}
+
+// A base station is given a message for sure where its own log says so.
+void Judge::base_station_hears(std::uint16_t sink, const Observation& seen, const Mark& mark,
+                               const Net& net) {
+  const std::uint16_t base = who_.devices[sink].partner;
+  if (base == kNobody) return;
+  const bool on = !interfaces_.switched_off(base, machine::Link::kSerial);
+  peis_.came_up(base, sinks_.island(sink), seen, net, seen.received && on);
+  hears(base,
+        {Role::kBaseStation, {sinks_.island(sink), machine::kNullDevid}, true, context_.sink_am},
+        machine::Link::kSerial, seen, sink, net, mark.receiver == base);
+}
+
+}  // namespace rubric::check
