@@ -96,7 +96,8 @@ struct LoggedNode {
   std::uint8_t channels = 0;   ///< Synaptic channels of each direction; 0: not said.
   bool peis = false;           ///< The log has its lines of PEIS.
   std::vector<BusyTime> busy;  ///< In order of their beginning.
-  std::vector<std::int64_t> link_acks_us;  ///< When its link told it of an acknowledgement.
+  std::vector<std::int64_t> link_acks_us;      ///< When its link told it of an acknowledgement.
+  std::vector<std::int64_t> link_failures_us;  ///< When it told that none came.
 };
 
 /// The times between which a frame of a file without stamps must lie, by frames that other files

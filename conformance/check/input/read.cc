@@ -138,6 +138,7 @@ Run in_one_order(Run run, const AlignOptions& options, std::optional<std::int64_
       if (busy.to_us != kNone) busy.to_us += logs_us - first_us;
     }
     for (std::int64_t& time_us : node.link_acks_us) time_us += logs_us - first_us;
+    for (std::int64_t& time_us : node.link_failures_us) time_us += logs_us - first_us;
   }
   if (run.watched_until_us >= 0) run.watched_until_us += logs_us - first_us;
   merge(run);

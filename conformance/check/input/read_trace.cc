@@ -158,9 +158,10 @@ class LogReader {
     const auto acked = [](const trace::FieldValue& field) {
       return field.path == "acked" && field.value.number == 1;
     };
-    if (std::ranges::none_of(line.message.fields, acked)) return;
+    const bool fails = std::ranges::none_of(line.message.fields, acked);
     for (LoggedNode& node : run_.nodes) {
-      if (node.name == line.node) node.link_acks_us.push_back(time_us);
+      if (node.name != line.node) continue;
+      (fails ? node.link_failures_us : node.link_acks_us).push_back(time_us);
     }
   }
 

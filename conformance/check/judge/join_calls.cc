@@ -234,8 +234,13 @@ void JoinCalls::told(std::uint16_t mote, const Observation& seen, const machine:
 bool JoinCalls::judge_late(std::uint16_t mote, const Observation& seen,
                            const std::vector<MoteHypothesis>& set) {
   if (!context_.device(mote).whole || !context_.run.has_time || set.empty()) return false;
-  const auto joined_us = [](const MoteHypothesis& h) {
-    return std::max(h.accepted_us, h.acked_us);
+  // It may wait until its link has confirmed ack_join, or it gives up (decision 102).
+  std::int64_t failed_us = -1;
+  for (const std::int64_t time_us : context_.run.nodes[mote].link_failures_us) {
+    if (time_us <= seen.place.time_us) failed_us = time_us;
+  }
+  const auto joined_us = [failed_us](const MoteHypothesis& h) {
+    return std::max({h.accepted_us, h.acked_us, failed_us});
   };
   for (const MoteHypothesis& h : set) {
     if (h.unknown || h.told) return false;
