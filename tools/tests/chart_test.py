@@ -5,6 +5,7 @@ Usage: chart_test.py RUBRIC, in the project's folder.
 """
 
 import concurrent.futures
+import json
 import pathlib
 import re
 import tempfile
@@ -53,8 +54,8 @@ class EveryCase(unittest.TestCase):
 
     @classmethod
     def setUpClass(cls):
-        listed = run("test", "--list", "--format", "json", text=True).stdout
-        cls.cases = re.findall(r'"name": ?"([^"]+)"', listed)
+        listed = json.loads(run("test", "--list", "--format", "json", text=True).stdout)["cases"]
+        cls.cases = [one["name"] for one in listed]
         with tempfile.TemporaryDirectory() as folder:
             run("test", "--target", "machine", "--report", folder, "--quiet")
             cls.logs = {}
@@ -63,9 +64,12 @@ class EveryCase(unittest.TestCase):
                 case = re.search(r"^case (\S+)", text, re.M)[1]
                 cls.logs[case] = re.findall(r"^\s*@(\d+)\s+(\S+)\s+([<>])\s+(\S+)\s+(?:am=\S+ )?"
                                             r"([a-z_]+|\*)", text, re.M)
+        # By file: for a case's name alone, the program reads all files that it contains.
+        places = [f"{one['file']}:{one['name']}" for one in listed]
+        files = sorted({one["file"] for one in listed})
         with concurrent.futures.ThreadPoolExecutor(4) as pool:
-            cls.pictures = dict(zip(cls.cases, pool.map(picture, cls.cases)))
-            cls.texts = dict(zip(cls.cases, pool.map(chart, cls.cases)))
+            cls.pictures = dict(zip(cls.cases, pool.map(picture, places)))
+            cls.texts = dict(zip(files, pool.map(chart, files)))
 
     def test_each_is_there(self):
         self.assertGreater(len(self.cases), 250)
@@ -85,12 +89,16 @@ class EveryCase(unittest.TestCase):
                                 f"{case}: {label}")
 
     def test_text_has_a_line_for_each_row(self):
-        for case, done in self.texts.items():
-            self.assertEqual((done.returncode, done.stderr), (0, ""), case)
-            lines = re.findall(r"^ +\d+  .*\S$", done.stdout, re.M)
-            self.assertEqual(len(lines), len(rows_of(self.pictures[case])), case)
-            for line in lines:
-                self.assertRegex(line, r"[|*]")
+        found = []
+        for file, done in self.texts.items():
+            self.assertEqual((done.returncode, done.stderr), (0, ""), file)
+            for case, text in re.findall(r"^(\S+): (.*\n(?:[ \n].*\n*)*)", done.stdout, re.M):
+                found.append(case)
+                lines = re.findall(r"^ +\d+  .*\S$", text, re.M)
+                self.assertEqual(len(lines), len(rows_of(self.pictures[case])), case)
+                for line in lines:
+                    self.assertRegex(line, r"[|*]")
+        self.assertEqual(sorted(found), sorted(self.cases))
 
     def test_pictures_name_themselves(self):
         for case, svg in self.pictures.items():
