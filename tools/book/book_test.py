@@ -212,21 +212,30 @@ class Mistakes(unittest.TestCase):
         self.only("# A\n\n{{layout net_msg}}\n\n{{layout rubicon::net_msg}}\n",
                   r"10-a\.md:5: rubicon::net_msg is shown at 10-a\.md:3 already")
 
+    def each(self, *wanted):
+        """As only() of each text with what is expected of it, but all as chapters of one book."""
+        book = {f"{i}-{i}": text for i, (text, _) in enumerate(wanted)}
+        found = self.chapter("# First\n", **book)
+        self.assertEqual(len(found), len(wanted), found)
+        for i, (_, expected) in enumerate(wanted):
+            place = rf"20-{i}-{i}\.md"
+            self.assertRegex("\n".join(found), f"(?m){place}{expected}")
+
     def test_links(self):
-        self.only("# A\n\nSee\n[here](#nowhere).\n", r"10-a\.md:4: #nowhere leads nowhere")
-        self.only("# A\n\n[x](../README.md)\n", r"10-a\.md:3: '../README.md' leads to a file")
-        self.only("# A\n\n[x](https://nodots/a)\n", r"10-a\.md:3: .* is not an address")
+        self.each(("# A\n\nSee\n[here](#nowhere).\n", ":4: #nowhere leads nowhere"),
+                  ("# B\n\n[x](../README.md)\n", r":3: '\.\./README\.md' leads to a file"),
+                  ("# C\n\n[x](https://nodots/a)\n", ":3: .* is not an address"),
+                  ("# D\n\n## Text {#find}\n", ":3: #find exists already, in the page"))
         self.only("# A\n\n## Same\n\n[b](#b)\n", r"20-b\.md:3: #same exists already, in 10-a\.md",
                   b="# B\n\n## Same\n")
-        self.only("# A\n\n## Text {#find}\n", r"10-a\.md:3: #find exists already, in the page")
 
     def test_text(self):
-        self.only("No title.\n", r"10-a\.md:1: expected '# Title'")
-        self.only("# A\n\n```text\nx\n", r"10-a\.md:3: expected a line that closes this fence")
-        self.only("# A\n\nSee {{rules J4}} here.\n", r"10-a\.md:3: expected a directive alone")
-        self.only("# A\n\n#### Deep\n", r"10-a\.md:3: expected a heading of level 2 at most")
-        self.only("# A\n\n# B\n", r"10-a\.md:3: expected one heading of level 1")
-        self.only("# A\n\n<b>bold</b>\n", r"10-a\.md:3: expected no HTML")
+        self.each(("No title.\n", ":1: expected '# Title'"),
+                  ("# B\n\n```text\nx\n", ":3: expected a line that closes this fence"),
+                  ("# C\n\nSee {{rules J4}} here.\n", ":3: expected a directive alone"),
+                  ("# D\n\n#### Deep\n", ":3: expected a heading of level 2 at most"),
+                  ("# E\n\n# F\n", ":3: expected one heading of level 1"),
+                  ("# G\n\n<b>bold</b>\n", ":3: expected no HTML"))
 
     def test_text_is_never_markup(self):
         with tempfile.TemporaryDirectory() as folder:
