@@ -49,7 +49,8 @@ def rebuild(build, root, copy):
         text = f'#include "{source}"\n' if source.suffix == ".cc" else source.read_text("utf-8")
         ours.write_text(text.replace(f'"{root}/', f'"{copy}/'), encoding="utf-8")
         objects.append(f"{ours}.o")
-        words[words.index("-o") + 1] = objects[-1]
+        at = words.index("-o")
+        words[at:at + 2] = ["-O0", "-o", objects[-1]]  # It runs a few times.
         words[words.index("-MF") + 1] = f"{ours}.d"
         words[-1] = str(ours)
         run([f"-I{copy}" if word == f"-I{root}" else word for word in words], build)

@@ -59,6 +59,8 @@ def main():
             install(build, prefix)
         for chapter in chapters:
             text = chapter.read_text(encoding="utf-8")
+            if not snippets.blocks(text):
+                continue
             place = snippets.Place(pathlib.Path(scratch) / chapter.stem, ROOT, build, prefix)
             now, wrong = snippets.renewed(text, place)
             worked += len(snippets.blocks(text))
