@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "fuzz/support/mutate_bytes.h"
+#include "tools/tests/made_inputs.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 extern "C" __attribute__((weak)) int LLVMFuzzerInitialize(int* argc, char*** argv);
@@ -23,8 +24,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr unsigned kMutations = 20;
-constexpr unsigned kPlainMutations = 200;  // Of bytes, which are less likely to reach far.
+constexpr unsigned kMutations = rubric::made_inputs(20);
+constexpr unsigned kPlainMutations = rubric::made_inputs(200);  // Less likely to reach far.
 constexpr std::size_t kMaxSize = 4096;
 
 std::vector<fs::path> files_in(const fs::path& path) {

@@ -12,7 +12,8 @@ inline constexpr bool kSanitized = false;
 #endif
 
 /// Returns `count`, but a fifth of it under sanitizers: there each input takes ten times as long,
-/// and the optimised build of the same test tries all of them.
+/// and the optimised build of the same test tries all of them, as fuzz/smoke tries more of a fuzz
+/// target.
 constexpr int made_inputs(int count) { return kSanitized ? count / 5 : count; }
 
 }  // namespace rubric
