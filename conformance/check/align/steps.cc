@@ -29,7 +29,7 @@ constexpr std::int64_t kAckRepeatUs = 810'000;  // After its reply an ack_join c
 constexpr std::int64_t kSilenceUs = 20'000'000;
 constexpr std::int64_t kSilences = 10;  // Times the longest of the others.
 constexpr std::size_t kManyFrames = 40;
-constexpr std::int64_t kAlone = 100;  // So much closer are the neighbours of a wrong stamp.
+constexpr std::int64_t kAloneTimes = 100;  // So much closer are the neighbours of a wrong stamp.
 constexpr std::size_t kTurnedMax = 8;
 constexpr std::uint8_t kDsnGapMax = 8;  // Beyond it a DSN is another sender's.
 constexpr std::size_t kFactsMax = 8;
@@ -153,7 +153,7 @@ class Recorded {
     // The stamp of `i` alone: it is before all that came.
     const bool low_wrong = i + 1 == stamps_.size() || stamps_[i + 1] >= stamps_[high] - kJitterUs;
     const auto near = [&](std::size_t from, std::size_t to) {
-      return stamps_[to] - stamps_[from] < off_us / kAlone;
+      return stamps_[to] - stamps_[from] < off_us / kAloneTimes;
     };
     if (high_wrong && !low_wrong && high > 0 && near(high - 1, i)) {
       suspect_[high] = What::kAlone;
