@@ -110,7 +110,8 @@ class LogReader {
   }
 
   std::int64_t us_of(std::int64_t ticks) const {
-    return ticks * 1'000'000 / trace::ticks_per_second(scope_.tick);
+    const std::int64_t per_second = trace::ticks_per_second(scope_.tick);
+    return ticks / per_second * 1'000'000 + ticks % per_second * 1'000'000 / per_second;
   }
 
   void take(const Line& line) {
