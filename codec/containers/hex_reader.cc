@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "codec/containers/link_record.h"
+#include "codec/containers/log_stamp.h"
 #include "codec/containers/radio_line.h"
 #include "codec/runtime/hdlc.h"
 
@@ -149,8 +150,11 @@ void HexReader::pass_over() {
   if (noise_.lines++ == 0) noise_.first = line_number_;
 }
 
-void HexReader::line(Bytes text, PacketSink sink) {
+void HexReader::line(Bytes whole, PacketSink sink) {
   ++line_number_;
+  if (line_number_ == 1) whole = whole.from(mark_size(whole));
+  const std::size_t stamp = is_log_ ? stamp_size(whole) : 0;
+  const Bytes text = whole.from(stamp);
   Packet packet;
   packet.line = line_number_;
   packet.framing = options_.hex_framing;
@@ -169,7 +173,8 @@ void HexReader::line(Bytes text, PacketSink sink) {
   if (is_log_ && packet.error.fault == Fault::kUnexpected && is_noise(text)) return pass_over();
   if (packet.error.fault != Fault::kNone) {
     packet.framing = Framing::kBare;
-    packet.bytes = text;
+    packet.error.offset_bytes += static_cast<std::uint32_t>(stamp);
+    packet.bytes = whole;
     packet.dropped_bytes = dropped_;
     return sink(packet);
   }

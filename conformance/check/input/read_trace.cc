@@ -233,6 +233,7 @@ class LogReader {
 }  // namespace
 
 bool looks_like_trace(std::string_view bytes) {
+  if (bytes.starts_with(trace::kByteOrderMark)) bytes.remove_prefix(trace::kByteOrderMark.size());
   while (!bytes.empty()) {
     const std::size_t end = bytes.find('\n');
     std::string_view line = bytes.substr(0, end);
