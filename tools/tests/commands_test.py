@@ -5,6 +5,7 @@ Usage: commands_test.py RUBRIC.
 """
 
 import json
+import os
 import pathlib
 import re
 import struct
@@ -98,7 +99,10 @@ class Fcs(Folder):
     def test_an_empty_file_is_named(self):
         file = self.folder / "empty.pcap"
         file.touch()
-        self.assertEqual(rubric("decode", file), (0, b"", f"rubric: {file}: is empty\n"))
+        for words in (("decode", file), ("stats", file), ("convert", file, "-o", os.devnull, "--format", "hex"),
+                      ("encode", file)):
+            code, _, err = rubric(*words)
+            self.assertEqual((code, err), (0, f"rubric: {file}: is empty\n"), words)
 
 
 class Encode(Folder):
