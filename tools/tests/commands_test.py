@@ -104,6 +104,18 @@ class Fcs(Folder):
             code, _, err = rubric(*words)
             self.assertEqual((code, err), (0, f"rubric: {file}: is empty\n"), words)
 
+    def test_texts_of_windows(self):
+        packet = "00 FF FF 00 00 03 00 25 0A 00 0C\r\n"
+        expected = rubric("decode", stdin=packet.encode())
+        self.assertEqual(expected[0], 0)
+        self.assertEqual(rubric("decode", stdin=b"\xef\xbb\xbf" + packet.encode()), expected)
+        code, _, err = rubric("decode", stdin=packet.encode("utf-16"))
+        self.assertEqual(code, 66)
+        self.assertIn("this is UTF-16 text", err)
+        line = b'\xef\xbb\xbf{"type":10,"value":12}\r\n'
+        self.assertEqual(rubric("encode", "--as", "config", stdin=line),
+                         (0, b"00 FF FF 00 00 03 00 25 0A 00 0C\n", ""))
+
 
 class Encode(Folder):
     def decoded(self, *files):
