@@ -86,10 +86,8 @@ Cases Cases::of(const std::vector<std::string>& paths) {
   for (const std::string& path : paths) {
     if (std::filesystem::is_directory(path)) {
       for (trace::Parsed& file : runner::load_cases(path)) out.add(std::move(file));
-    } else if (std::filesystem::exists(path)) {
-      out.add(read_file(path));
     } else {
-      throw std::runtime_error(path + ": no such file or folder");
+      out.add(read_file(path));
     }
   }
   return out;
