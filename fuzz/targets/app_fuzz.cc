@@ -1,5 +1,6 @@
 // Property: any text read as a protocol's app.yaml is refused at a line of it, or each role,
-// parameter, call and event of the protocol has one name, by which it is found, and bounds that hold.
+// parameter, call and event of the protocol has one name, by which it is found, and bounds that
+// hold.
 #include <cstddef>
 #include <cstdint>
 #include <set>

@@ -25,8 +25,8 @@ struct Said {
   std::vector<Hypothesis> hypotheses;
 };
 
-/// Returns by how much a clock of 32 bits has grown between two readings: of the growths that wrap to
-/// the second one, the nearest to the time that passed.
+/// Returns by how much a clock of 32 bits has grown between two readings: of the growths that wrap
+/// to the second one, the nearest to the time that passed.
 inline std::int64_t grown_ms_of(std::uint32_t from_ms, std::uint32_t to_ms,
                                 std::int64_t passed_ms) {
   const std::uint32_t expected_ms = from_ms + static_cast<std::uint32_t>(passed_ms);
