@@ -5,7 +5,6 @@
 #include "codec/containers/hdlc_reader.h"
 #include "codec/containers/hex_reader.h"
 #include "codec/containers/link_record.h"
-#include "codec/containers/log_stamp.h"
 #include "codec/containers/pcap_reader.h"
 #include "codec/containers/pcapng_format.h"
 #include "codec/containers/pcapng_reader.h"

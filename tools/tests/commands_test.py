@@ -99,8 +99,8 @@ class Fcs(Folder):
     def test_an_empty_file_is_named(self):
         file = self.folder / "empty.pcap"
         file.touch()
-        for words in (("decode", file), ("stats", file), ("convert", file, "-o", os.devnull, "--format", "hex"),
-                      ("encode", file)):
+        for words in (("decode", file), ("stats", file), ("encode", file),
+                      ("convert", file, "-o", os.devnull, "--format", "hex")):
             code, _, err = rubric(*words)
             self.assertEqual((code, err), (0, f"rubric: {file}: is empty\n"), words)
 

@@ -166,9 +166,10 @@ class Protocol(testing.Folder):
                  ":3:10: error: level is 'SHALL'"),
                 (app, "calls:", "callls:", ":12:1: 'callls' is no key of a protocol; known are"),
                 (app, "probes.ksy", "nothing.ksy", ":3:7: no file probes/nothing.ksy"),
-                (rules, "  level: MUST\n  clause: answers\n  sentence: \"A node answers", "  roles: [node]\n  level: MUST\n  clause: answers\n  sentence: \"A node answers",
+                (rules, "- id: ANSWER-NUMBER\n", "- id: ANSWER-NUMBER\n  roles: [node]\n",
                  ":3:3: error: unknown key 'roles' of a requirement; known are id"),
-                (app, "probes.ksy", "probs", ":3:7: expected a .ksy file of the folder, or a shipped"),
+                (app, "probes.ksy", "probs",
+                 ":3:7: expected a .ksy file of the folder, or a shipped"),
                 (app, "probes.ksy", "osciloscope", "(did you mean 'oscilloscope'?)"),
                 (app, "probes.ksy", "list", "given 'list'"),
                 (probes / "probes.ksy", "type: u2", "type: u3", "unknown type 'u3'")]:

@@ -7,7 +7,6 @@
 #include "codec/containers/capture_time.h"
 #include "codec/containers/hex_reader.h"
 #include "codec/containers/link_record.h"
-#include "codec/containers/log_stamp.h"
 #include "codec/containers/sf_reader.h"
 #include "codec/containers/test/testing.h"
 #include "codec/runtime/ieee802154_fcs.h"

@@ -28,7 +28,7 @@ using trace::Op;
 
 constexpr Ticks kLateTicks = 1500;  // How long a missing output is awaited beyond its time.
 constexpr std::int64_t kLastTick = INT32_MAX;  // Clocks wrap after twice that.
-constexpr Ticks kGrainTicks = 10;   // Of an adapter's own clock, or of its rate in a second.
+constexpr Ticks kGrainTicks = 10;  // Of an adapter's own clock, or of its rate in a second.
 
 // Returns a number that no trace uses by chance, another one for the next seed.
 std::int64_t seeded_number(std::uint64_t seed) {

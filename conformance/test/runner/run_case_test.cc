@@ -453,9 +453,10 @@ TEST(RunCase, WhatDiffersIsBlamedBeforeWhatForbidsTheSameOutput) {
 }
 
 TEST(RunCase, ATimeThatClocksCannotHoldIsAnError) {
-  for (const char* late : {"@4294967400 m5 < app get_clock()\n", "@2147483648 m5 < app get_clock()\n",
-                           "a: @2147483000 m5 < app get_clock()\n"
-                           "a+0..700 m5 > app clock(*)\n"}) {
+  for (const char* late :
+       {"@4294967400 m5 < app get_clock()\n", "@2147483648 m5 < app get_clock()\n",
+        "a: @2147483000 m5 < app get_clock()\n"
+        "a+0..700 m5 > app clock(*)\n"}) {
     const CaseResult result = run(late, {});
     EXPECT_EQ(result.verdict, CaseVerdict::kError) << late;
     EXPECT_NE(result.reason.find("a case ends by tick 2147483647"), std::string::npos)
