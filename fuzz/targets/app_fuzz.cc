@@ -10,6 +10,7 @@
 #include "codec/reflect/registry.h"
 #include "conformance/trace/parameters.h"
 #include "conformance/trace/protocol.h"
+#include "conformance/trace/trace.h"
 #include "fuzz/support/places.h"
 #include "fuzz/support/require.h"
 
