@@ -1,7 +1,9 @@
 #include "codec/containers/hex_reader.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
+#include <string_view>
 
 #include "codec/containers/link_record.h"
 #include "codec/containers/radio_line.h"
@@ -20,6 +22,81 @@ int hex_digit(std::uint8_t c) {
 
 bool is_space(std::uint8_t c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
+constexpr std::size_t kStampMost = 48;
+constexpr std::string_view kDigits = "0123456789";
+constexpr std::string_view kBlanks = " \t";
+
+bool is_digit(char c) { return kDigits.find(c) != kDigits.npos; }
+
+std::string_view word_of(std::string_view text) {
+  return text.substr(0, text.find_first_of(" \t\r"));
+}
+
+std::size_t after_blanks(std::string_view text, std::size_t at) {
+  return std::min(text.find_first_not_of(kBlanks, at), text.size());
+}
+
+// Returns whether a word is as 1700000000.123.
+bool is_seconds(std::string_view word) {
+  const std::size_t point = word.find_first_not_of(kDigits);
+  return point != 0 && point + 1 < word.size() && word[point] == '.' &&
+         word.find_first_not_of(kDigits, point + 1) == word.npos;
+}
+
+// Returns whether a word is as 12:34:56, and perhaps what follows: a fraction, a zone.
+bool is_clock(std::string_view word) {
+  const std::size_t hours = std::min(word.find_first_not_of(kDigits), word.size());
+  return (hours == 1 || hours == 2) && word.size() >= hours + 3 && word[hours] == ':' &&
+         is_digit(word[hours + 1]) && is_digit(word[hours + 2]) && word.back() != ':';
+}
+
+// Returns whether a word is as 2026-11-24 or 24/11/2026.
+bool is_date(std::string_view word) {
+  const std::size_t first = word.find_first_of("-/");
+  return first != word.npos && first != 0 && word.find(word[first], first + 1) != word.npos &&
+         word.back() != word[first] &&
+         word.find_first_not_of(
+             std::string_view(word[first] == '-' ? "-0123456789" : "/0123456789")) == word.npos;
+}
+
+bool is_month(std::string_view word) {
+  constexpr std::array<std::string_view, 12> kMonths{"Jan", "Feb", "Mar", "Apr", "May", "Jun",
+                                                     "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"};
+  return std::find(kMonths.begin(), kMonths.end(), word) != kMonths.end();
+}
+
+// Returns the end of the date that a text begins with, and of the blanks after it; 0 without one.
+std::size_t date_end(std::string_view text) {
+  std::string_view word = word_of(text);
+  std::size_t end = word.size();
+  if (is_date(word)) return after_blanks(text, end);
+  if (!is_month(word)) return 0;
+  const std::size_t day = after_blanks(text, end);
+  word = word_of(text.substr(day));
+  const bool whole =
+      !word.empty() && word.size() <= 2 && word.find_first_not_of(kDigits) == word.npos;
+  return whole ? after_blanks(text, day + word.size()) : 0;
+}
+
+// Returns the end of the stamp itself; 0 without one.
+std::size_t stamp_end(std::string_view text) {
+  if (text.starts_with('[')) {
+    const std::size_t end = text.find(']');
+    const bool dated = text.substr(0, end).find_first_of(kDigits) != text.npos;
+    return end != text.npos && dated ? end + 1 : 0;
+  }
+  std::string_view word = word_of(text);
+  if (is_seconds(word)) return word.size();
+  const std::size_t day_end = word.find('T');
+  if (day_end != word.npos && is_date(word.substr(0, day_end)) &&
+      is_clock(word.substr(day_end + 1))) {
+    return word.size();
+  }
+  const std::size_t date = date_end(text);
+  word = word_of(text.substr(date));
+  return is_clock(word) ? date + word.size() : 0;
+}
+
 std::uint16_t link_type_of(const ReaderOptions& options) {
   switch (options.hex_framing) {
     case Framing::kHdlc: return kLinkSerial;
@@ -31,6 +108,21 @@ std::uint16_t link_type_of(const ReaderOptions& options) {
 }
 
 }  // namespace
+
+std::size_t stamp_size(Bytes line) {
+  const std::string_view text(reinterpret_cast<const char*>(line.data()), line.size());
+  const std::size_t begin = after_blanks(text, 0);
+  const std::size_t end = stamp_end(text.substr(begin, kStampMost));
+  if (end == 0) return 0;
+  const std::size_t next = after_blanks(text, begin + end);
+  return text.substr(next, 2) == "->" ? after_blanks(text, next + 2) : next;
+}
+
+std::size_t mark_size(Bytes text) {
+  constexpr std::string_view kMark = "\xEF\xBB\xBF";
+  const std::string_view begin(reinterpret_cast<const char*>(text.data()), text.size());
+  return begin.starts_with(kMark) ? kMark.size() : 0;
+}
 
 bool is_hex_digit(std::uint8_t c) { return hex_digit(c) != kNoDigit; }
 
@@ -149,8 +241,11 @@ void HexReader::pass_over() {
   if (noise_.lines++ == 0) noise_.first = line_number_;
 }
 
-void HexReader::line(Bytes text, PacketSink sink) {
+void HexReader::line(Bytes whole, PacketSink sink) {
   ++line_number_;
+  if (line_number_ == 1) whole = whole.from(mark_size(whole));
+  const std::size_t stamp = is_log_ ? stamp_size(whole) : 0;
+  const Bytes text = whole.from(stamp);
   Packet packet;
   packet.line = line_number_;
   packet.framing = options_.hex_framing;
@@ -169,7 +264,8 @@ void HexReader::line(Bytes text, PacketSink sink) {
   if (is_log_ && packet.error.fault == Fault::kUnexpected && is_noise(text)) return pass_over();
   if (packet.error.fault != Fault::kNone) {
     packet.framing = Framing::kBare;
-    packet.bytes = text;
+    packet.error.offset_bytes += static_cast<std::uint32_t>(stamp);
+    packet.bytes = whole;
     packet.dropped_bytes = dropped_;
     return sink(packet);
   }

@@ -18,8 +18,9 @@ inline constexpr std::size_t kHexLineMax = 64 * 1024;
 /// that begins_serial_frame() has the bytes of a serial line, flags and escapes included; a frame
 /// goes on in the next lines until its closing flag.
 ///
-/// In a log the lines that is_noise() knows, and those with fewer bytes than a packet's header, are
-/// passed over and counted; those of read_radio_line() are radio frames.
+/// In a log stamp_size() bytes of each line are passed over: they say when a line was printed, not
+/// when a packet came. The lines that is_noise() knows, and those with fewer bytes than a packet's
+/// header, are passed over and counted; those of read_radio_line() are radio frames.
 ///
 /// Faults: kUnexpected (a line that is no hex text: the line itself is delivered, the offset counts
 /// its characters), kTooLong (a line beyond kHexLineMax), kCut never: the last line needs no end;
@@ -37,7 +38,7 @@ class HexReader final : public Reader {
   bool is_serial_bytes(Bytes bytes) const;
   void serial_bytes(Bytes bytes, PacketSink sink);
   void hold(Bytes text);
-  void line(Bytes text, PacketSink sink);
+  void line(Bytes whole, PacketSink sink);
   void pass_over();
   void deliver_held(PacketSink sink);
 
@@ -66,6 +67,15 @@ bool is_noise(Bytes line);
 /// flag, and a second flag or a packet kind of TEP 113 if more follows. A packet may begin with 7E,
 /// too.
 bool begins_serial_frame(Bytes bytes);
+
+/// Returns the bytes of the time stamp that a line begins with, blanks and an arrow after it
+/// included; 0 without one. Stamps are a text in brackets with a digit, as `[12.345]`; a number
+/// with a point, as `1700000000.123`; and a time of day, as `12:34:56.789`, after a date or not:
+/// those of `ts`, minicom and the Arduino IDE are. Hex text never begins so.
+std::size_t stamp_size(Bytes line);
+
+/// Returns the bytes of the mark with which editors begin a file of UTF-8 text: 3 or 0.
+std::size_t mark_size(Bytes text);
 
 bool is_hex_digit(std::uint8_t c);
 

@@ -71,8 +71,11 @@ TextLines look_at_lines(Bytes sample) {
   for (const std::uint8_t* p = sample.begin(); p != sample.end();) {
     const std::uint8_t* const newline = std::find(p, sample.end(), '\n');
     const bool whole = newline != sample.end();
-    const Bytes line(p, static_cast<std::size_t>(newline - p));
+    const Bytes written(p, static_cast<std::size_t>(newline - p));
     p = whole ? newline + 1 : newline;
+    const std::size_t stamp = stamp_size(written);
+    const Bytes line = written.from(stamp);
+    found.others = found.others || stamp != 0;
     found.dump_rows += is_dump_row(line);
     if (read_radio_line(line, stated, bytes)) {
       found.packets = found.others = true;
@@ -150,7 +153,8 @@ std::unique_ptr<Reader> make_reader(InputFormat format, const ReaderOptions& opt
 bool is_hex_dump(Bytes first_bytes) { return is_hex_dump(look_at_lines(sample_of(first_bytes))); }
 
 bool lines_end_with_fcs(Bytes first_bytes) {
-  const TextLines found = look_at_lines(sample_of(first_bytes));
+  const Bytes sample = sample_of(first_bytes);
+  const TextLines found = look_at_lines(sample.from(mark_size(sample)));
   return found.with_fcs != 0 && 2 * found.with_fcs >= found.of_bytes;
 }
 
@@ -163,8 +167,8 @@ InputFormat detect(Bytes first_bytes) {
   if (sample.size() >= 2 && sample[0] == kSfMagic && sample[1] == kSfVersion) {
     return InputFormat::kSf;
   }
-  if (is_json(sample)) return InputFormat::kJsonl;
-  const InputFormat text = text_format(sample);
+  if (is_json(sample.from(mark_size(sample)))) return InputFormat::kJsonl;
+  const InputFormat text = text_format(sample.from(mark_size(sample)));
   if (text != InputFormat::kUnknown) return text;
   if (is_hdlc(sample)) return InputFormat::kHdlc;
   return InputFormat::kUnknown;

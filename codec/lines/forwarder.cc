@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "codec/lines/broken.h"
+
 namespace rubric::lines {
 namespace {
 
@@ -17,9 +19,13 @@ void ForwarderLine::begin(SteadyTime deadline) {
   const std::uint8_t hello[] = {kMagic, kVersion};
   put(Bytes(hello, sizeof hello), deadline);
   while (bytes_.size() < sizeof hello) {
-    if (!read_some(deadline)) {
-      broken("the other end does not begin a serial forwarder's connection");
+    bool more = false;
+    try {
+      more = read_some(deadline);
+    } catch (const Broken&) {
+      throw Broken("the other end closed it before it began: it may serve another program");
     }
+    if (!more) broken("the other end does not begin a serial forwarder's connection");
   }
   if (bytes_[0] != kMagic || bytes_[1] < kVersion) {
     broken(

@@ -6,10 +6,26 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdio>
 #include <filesystem>
 #include <system_error>
 
 namespace rubric::text {
+
+int read_file(const std::string& path, std::string& text) {
+  text.clear();
+  const bool is_stdin = path == "-";
+  std::FILE* const file = is_stdin ? stdin : std::fopen(path.c_str(), "rb");
+  if (!file) return errno;
+  char chunk[65536];
+  for (std::size_t n = 1; n != 0 && text.size() <= kTextBytesMax;) {
+    n = std::fread(chunk, 1, sizeof chunk, file);
+    text.append(chunk, n);
+  }
+  const int error = std::ferror(file) != 0 ? errno : 0;
+  if (!is_stdin) std::fclose(file);
+  return error == 0 && text.size() > kTextBytesMax ? EFBIG : error;
+}
 
 int write_all(int fd, std::string_view rest) {
   while (!rest.empty()) {

@@ -1,10 +1,17 @@
-// The one way in which commands write files: whole beside the name, or growing under it.
+// The one way in which commands read texts whole, and write files: whole beside the name, or
+// growing under it.
 #pragma once
 
 #include <string>
 #include <string_view>
 
 namespace rubric::text {
+
+/// More than any text that is held whole: a longer one would fill the memory.
+inline constexpr std::size_t kTextBytesMax = 256 * 1024 * 1024;
+/// Reads a whole file, or stdin for "-", into `text`. Returns 0, or the error as in errno: EFBIG if
+/// it has more than kTextBytesMax bytes.
+int read_file(const std::string& path, std::string& text);
 
 /// Writes all of `text` to the file descriptor, waiting if needed. Returns 0, or the error as in
 /// errno.

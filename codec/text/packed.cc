@@ -36,6 +36,7 @@ class GzipUnpacker final : public Unpacker {
   GzipUnpacker& operator=(const GzipUnpacker&) = delete;
 
   std::size_t unpack(Bytes& packed, MutableBytes to) override {
+    if (damaged_) throw damage();
     stream_.next_out = to.data();
     stream_.avail_out = static_cast<uInt>(to.size());
     while (stream_.avail_out == to.size() && !packed.empty()) {
@@ -46,9 +47,9 @@ class GzipUnpacker final : public Unpacker {
       const int result = inflate(&stream_, Z_NO_FLUSH);
       packed = packed.from(static_cast<std::size_t>(stream_.next_in - packed.data()));
       if (result == Z_STREAM_END) ended_ = true;
-      if (result != Z_OK && result != Z_STREAM_END && result != Z_BUF_ERROR) {
-        throw PackedDamage("its gzip data are damaged");
-      }
+      if (result == Z_OK || result == Z_STREAM_END || result == Z_BUF_ERROR) continue;
+      damaged_ = true;
+      if (stream_.avail_out == to.size()) throw damage();
     }
     if (stream_.avail_out == to.size() && !ended_) inflate(&stream_, Z_NO_FLUSH);  // What waits.
     return to.size() - stream_.avail_out;
@@ -56,8 +57,11 @@ class GzipUnpacker final : public Unpacker {
   bool may_end() const override { return ended_; }
 
  private:
+  static PackedDamage damage() { return PackedDamage("its gzip data are damaged"); }
+
   z_stream stream_{};
   bool ended_ = false;
+  bool damaged_ = false;
 };
 
 class ZstdUnpacker final : public Unpacker {
@@ -67,7 +71,8 @@ class ZstdUnpacker final : public Unpacker {
   }
 
   std::size_t unpack(Bytes& packed, MutableBytes to) override {
-    ZSTD_outBuffer out{to.data(), to.size(), 0};
+    // What a call writes before it meets a damage is lost.
+    ZSTD_outBuffer out{to.data(), std::min(to.size(), kPieceBytes), 0};
     do {
       ZSTD_inBuffer in{packed.data(), packed.size(), 0};
       const std::size_t left = ZSTD_decompressStream(stream_.get(), &out, &in);

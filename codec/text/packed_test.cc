@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <vector>
 
 namespace rubric::text {
 namespace {
@@ -70,6 +71,27 @@ TEST(Packed, DamageAndCutsAreSaid) {
     std::string damaged = file;
     damaged[file.size() / 2] = static_cast<char>(damaged[file.size() / 2] ^ 0x55);
     EXPECT_THROW(unpacked(packing, damaged), PackedDamage);
+  }
+}
+
+TEST(Packed, WhatComesBeforeADamageIsUnpacked) {
+  const std::string text = long_text();
+  for (const Packing packing : kBoth) {
+    std::string file = packed(packing, text);
+    file.back() = static_cast<char>(file.back() ^ 0x55);  // Of the checksum, or the length.
+    const auto unpacker = make_unpacker(packing);
+    std::string got;
+    std::vector<std::uint8_t> buffer(text.size());
+    Bytes rest = view(file);
+    const auto all = [&] {
+      while (const std::size_t size = unpacker->unpack(rest, {buffer.data(), buffer.size()})) {
+        got.append(reinterpret_cast<const char*>(buffer.data()), size);
+      }
+    };
+    EXPECT_THROW(all(), PackedDamage);
+    constexpr std::size_t kLost = 64 * 1024;  // At most, by zstd.
+    EXPECT_GE(got.size(), text.size() - (packing == Packing::kZstd ? kLost : 0));
+    EXPECT_TRUE(text.starts_with(got));
   }
 }
 

@@ -311,6 +311,7 @@ std::string Parsed::errors() const {
 Parsed parse_syntax(std::string_view text, std::string_view file_name) {
   Parsed parsed;
   parsed.file_name = file_name;
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   Parser(parsed).run(text);
   return parsed;
 }

@@ -31,6 +31,9 @@ struct Parsed {
   std::string errors() const;
 };
 
+/// Editors begin files with it; it is passed over.
+inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
 /// Reads a whole file and checks it (check.h).
 Parsed parse(std::string_view text, std::string_view file_name);
 /// Checks the grammar alone: not names, values and the order of lines.

@@ -50,7 +50,7 @@ class AppReader {
          {"protocol", "wire", "roles", "profiles", "frames", "enums", "parameters", "calls",
           "events"});
     out_.name = word(need(root, "protocol", "a protocol"));
-    out_.wire = &find_wire_(text(need(root, "wire", "a protocol")));
+    wire(need(root, "wire", "a protocol"));
     for (const auto& [key, value] : entries(need(root, "roles", "a protocol"))) role(key, value);
     if (out_.roles.empty()) fail(root, "a protocol without a role");
     out_.profiles = words(root["profiles"]);
@@ -75,6 +75,14 @@ class AppReader {
     const YAML::Mark at = node.Mark();
     throw std::runtime_error(file_ + ':' + std::to_string(std::max(at.line, 0) + 1) + ':' +
                              std::to_string(std::max(at.column, 0) + 1) + ": " + what);
+  }
+
+  void wire(const YAML::Node& node) {
+    try {
+      out_.wire = &find_wire_(text(node));
+    } catch (const std::invalid_argument& mistake) {
+      fail(node, mistake.what());
+    }
   }
 
   YAML::Node need(const YAML::Node& map, const char* key, const std::string& what) const {

@@ -92,7 +92,7 @@ const Protocol& protocol();
 /// Sets it; before anything is parsed, and before there are threads.
 void use(Protocol other);
 
-/// Finds the wire spec that an app.yaml names.
+/// Finds the wire spec that an app.yaml names; throws std::invalid_argument where it cannot.
 using FindWire = std::function<const reflect::Protocol&(const std::string& name)>;
 /// Reads an app.yaml. Throws std::runtime_error with "file:line:column: mistake".
 Protocol read_protocol(const std::string& text, const std::string& file, const FindWire& find_wire);

@@ -38,7 +38,8 @@ void check_lines(const std::string& text, const std::vector<Kept>& packets) {
   std::size_t begin = 0;
   while (begin < text.size()) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
-    const std::string line = text.substr(begin, end - begin);
+    std::string line = text.substr(begin, end - begin);
+    if (begin == 0 && line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);
     const std::optional<std::string> bytes = plain_line(line);
     if (!bytes || !bytes->empty()) {
       require(next < packets.size(), "every line with bytes gives a packet");

@@ -4,8 +4,10 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <system_error>
 
 namespace rubricc {
 namespace {
@@ -129,9 +131,21 @@ std::string Diagnostics::print(const std::map<Key, Diagnostic>& list, std::strin
 }
 
 std::optional<std::string> text_of_file(const std::string& file, Diagnostics& diagnostics) {
-  std::ifstream in(file, std::ios::binary);
-  if (in) return std::string(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
-  diagnostics.error({file, 0, 0}, "cannot be read");
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(file, error);
+  if (!error && size > kFileBytesMax) {
+    diagnostics.error({file, 0, 0}, "the file is too large", "at most 1 MiB is read");
+    return std::nullopt;
+  }
+  // A pipe or a device may never end, nor even open.
+  const bool regular = std::filesystem::is_regular_file(file, error);
+  std::ifstream in;
+  if (regular) in.open(file, std::ios::binary);
+  if (in.is_open()) {
+    return std::string(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
+  }
+  const bool other = !regular && std::filesystem::exists(file, error);
+  diagnostics.error({file, 0, 0}, other ? "not a regular file" : "cannot be read");
   return std::nullopt;
 }
 

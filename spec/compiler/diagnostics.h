@@ -59,7 +59,10 @@ class Diagnostics {
   std::map<Key, Diagnostic> notes_;
 };
 
-/// Returns the text of a file; nothing, after an error, if it cannot be read.
+/// More than any spec, catalogue or trace has.
+inline constexpr std::size_t kFileBytesMax = 1 << 20;
+/// Returns the text of a regular file; nothing, after an error, if it cannot be read or is larger
+/// than kFileBytesMax.
 std::optional<std::string> text_of_file(const std::string& file, Diagnostics& diagnostics);
 
 /// Returns `'word'`.

@@ -102,7 +102,7 @@ int run(const CompilerOptions& options) {
   std::vector<std::string> inputs = options.files;
   inputs.push_back(options.requirements);
   for (const std::string& input : inputs) {
-    if (std::ifstream(input).good() && !std::filesystem::is_directory(input)) continue;
+    if (std::filesystem::exists(input) && !std::filesystem::is_directory(input)) continue;
     std::cerr << "rubricc: cannot read " << input << '\n';
     return rubric::cli::kExitInput;
   }

@@ -23,6 +23,7 @@
 #include <utility>
 
 #include "codec/text/files.h"
+#include "codec/text/packed.h"
 #include "codec/text/text.h"
 #include "tools/cli/exit_codes.h"
 
@@ -73,7 +74,8 @@ struct OneRun {
 
 void add_folder(const std::string& folder, std::vector<OneRun>& out) {
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
-    const std::string extension = entry.path().extension().string();
+    const fs::path plain = text::name_unpacked(entry.path().native());
+    const std::string extension = plain.extension().string();
     const bool wanted = std::find(std::begin(kExtensions), std::end(kExtensions), extension) !=
                         std::end(kExtensions);
     if (!wanted || !entry.is_regular_file()) continue;

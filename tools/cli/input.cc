@@ -108,8 +108,6 @@ class Run {
         complain(std::strerror(error.code().value()));
       } catch (const FileChanged& changed) {
         complain(changed.what());
-      } catch (const text::PackedDamage& damage) {
-        complain(damage.what());
       } catch (const std::invalid_argument& error) {
         complain(error.what());
       }
@@ -217,6 +215,13 @@ class Run {
     }
     passed_over_.clear();
     InputFile file(files_[source_.file_index], options_.follow, on_idle_);
+    read(file);
+    if (file.damage().empty()) return;
+    damaged_ = true;
+    remark(file.damage());
+  }
+
+  void read(InputFile& file) {
     const bool bare = !options_.as_message.empty();
     InputFormat found = InputFormat::kUnknown;
     // A format that is named needs no look at the content, so that a line of a pipe is read at
@@ -227,7 +232,7 @@ class Run {
     const Bytes beginning(chunk_.get(), size);
     if (other_.is_it && other_.is_it(beginning)) return other_.take(source_, rest_of(file, size));
     if (options_.format == "auto") {
-      result_.empty = result_.empty || size == 0;
+      if (size == 0 && !file.damage().empty()) return;
       if (size == 0) return remark("is empty");  // Nothing in it, nothing wrong with it.
       if (found == InputFormat::kUnknown && (!bare || is_hex_dump(beginning))) {
         return complain(unknown_format(beginning));
@@ -253,6 +258,11 @@ class Run {
   }
 
   static std::string_view unknown_format(Bytes beginning) {
+    if (beginning.size() > 1 && beginning[0] + beginning[1] == 0xFF + 0xFE) {
+      return "this is UTF-16 text, as PowerShell writes; 'iconv -f UTF-16 -t UTF-8 FILE' makes "
+             "UTF-8 "
+             "of it";
+    }
     if (is_hex_dump(beginning)) {
       return "this is a hex dump with offsets; 'text2pcap -l 195 FILE FILE.pcap' makes a capture "
              "of it (-l 230 for radio frames without FCS)";

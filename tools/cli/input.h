@@ -67,7 +67,6 @@ struct Source {
 struct InputResult {
   bool failed = false;   ///< A file could not be opened or read, or is damaged; said on stderr.
   bool damaged = false;  ///< Nothing worse happened than that a file has damaged places.
-  bool empty = false;    ///< A file has nothing in it; said on stderr.
   bool stopped = false;  ///< The callback asked to stop.
   bool live = false;     ///< A line, or a followed file, was read until the user stopped it.
 };

@@ -1,6 +1,7 @@
 #include "tools/cli/input_file.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <poll.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -78,19 +79,32 @@ std::size_t InputFile::read(std::uint8_t* to, std::size_t size) {
 }
 
 std::size_t InputFile::read_packed(std::uint8_t* to, std::size_t size) {
-  for (;;) {
+  while (damage_.empty()) {
     const Bytes all(packed_.data(), packed_.size());
     Bytes rest = all.from(packed_at_);
-    const std::size_t got = unpacker_->unpack(rest, {to, size});
+    std::size_t got = 0;
+    try {
+      got = unpacker_->unpack(rest, {to, size});
+    } catch (const text::PackedDamage& damage) {
+      damage_ = damage.what();
+    }
     packed_at_ = all.size() - rest.size();
     if (got != 0) return got;
+    if (!damage_.empty()) break;
+    packed_before_ += packed_.size();
     packed_.resize(kPackedBytes);
     packed_.resize(read_plain(packed_.data(), packed_.size()));
     packed_at_ = 0;
     if (!packed_.empty()) continue;
-    if (!unpacker_->may_end()) throw text::PackedDamage("its compressed data end too soon");
-    return 0;
+    if (unpacker_->may_end()) return 0;
+    damage_ = "its compressed data end too soon";
   }
+  return 0;
+}
+
+std::string InputFile::damage() const {
+  if (damage_.empty()) return {};
+  return fmt::format("damaged at byte {}: {}", packed_before_ + packed_at_, damage_);
 }
 
 std::size_t InputFile::read_plain(std::uint8_t* to, std::size_t size) {

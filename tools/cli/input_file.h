@@ -40,10 +40,13 @@ class InputFile {
   bool is_regular() const { return is_regular_; }
 
   /// Reads up to `size` bytes and returns their number, 0 at the end, which a followed file has
-  /// only when the user asks to stop. Unpacks what begins as gzip or zstd data. Throws
-  /// std::system_error, text::PackedDamage, and, once all was read, FileChanged if the file
-  /// became shorter, was overwritten, or its name belongs to another file or none.
+  /// only when the user asks to stop. Unpacks what begins as gzip or zstd data, up to the first
+  /// damage. Throws std::system_error, and, once all was read, FileChanged if the file became
+  /// shorter, was overwritten, or its name belongs to another file or none.
   std::size_t read(std::uint8_t* to, std::size_t size);
+
+  /// Returns what is wrong with the packed bytes, and where; empty if nothing was found.
+  std::string damage() const;
 
   /// Returns whether more bytes are there, or will be in a moment.
   bool has_more_soon() const;
@@ -67,6 +70,8 @@ class InputFile {
   std::unique_ptr<text::Unpacker> unpacker_;  // Null: the bytes are as they are.
   std::vector<std::uint8_t> packed_;          // Read, and from packed_at_ on not unpacked.
   std::size_t packed_at_ = 0;
+  std::uint64_t packed_before_ = 0;  // Bytes of the file before those of packed_.
+  std::string damage_;
   std::vector<std::uint8_t> tail_;  // Of a followed file: the last bytes that were read.
   const std::function<void()>& on_idle_;
 };

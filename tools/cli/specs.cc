@@ -117,7 +117,7 @@ const reflect::Protocol& protocol_of(const std::string& spec) {
 void use_requirements_of(const std::string& file) {
   static rubricc::Model kept;  // The rules point into it.
   rubricc::Diagnostics diagnostics;
-  rubricc::load_requirements(file, kept, diagnostics);
+  rubricc::load_requirements(file, kept, diagnostics, rubricc::Catalogue::kOther);
   text::print(stderr, "{}", diagnostics.print());
   if (!diagnostics.empty()) exit_with(kExitInput);
   std::vector<reflect::Requirement> rules = {reflect::requirements().front()};

@@ -1,30 +1,19 @@
 #include "tools/cli/text_file.h"
 
-#include <cerrno>
-#include <cstdio>
 #include <cstring>
 
+#include "codec/text/files.h"
 #include "codec/text/packed.h"
 #include "tools/cli/terminal.h"
 
 namespace rubric::cli {
 
 bool read_file(const std::string& path, std::string& text, std::string& error) {
-  text.clear();
   if (path == "-") say_what_is_awaited();
-  std::FILE* const file = path == "-" ? stdin : std::fopen(path.c_str(), "rb");
-  if (!file) {
-    error = path + ": " + std::strerror(errno);
+  if (const int code = text::read_file(path, text)) {
+    error = path + ": " + std::strerror(code);
     return false;
   }
-  char chunk[65536];
-  for (std::size_t n = 0; (n = std::fread(chunk, 1, sizeof chunk, file)) > 0;) {
-    text.append(chunk, n);
-  }
-  const bool broken = std::ferror(file) != 0;
-  if (broken) error = path + ": " + std::strerror(errno);
-  if (file != stdin) std::fclose(file);
-  if (broken) return false;
   const Bytes all(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
   const text::Packing packing = text::packing_of(all);
   if (packing == text::Packing::kNone) return true;

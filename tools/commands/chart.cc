@@ -20,6 +20,7 @@
 #include "tools/cli/input.h"
 #include "tools/cli/output.h"
 #include "tools/cli/terminal.h"
+#include "tools/cli/verdict.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/protocol_folder.h"
 
@@ -50,11 +51,6 @@ struct ChartOptions {
   std::string folder;  // Of another protocol.
 };
 
-[[noreturn]] void input_error(const std::string& what) {
-  text::print(stderr, "{}\n", what);
-  cli::exit_with(cli::kExitInput);
-}
-
 // Returns the cases that the user means; they point into `cases`. `traces`: of another protocol.
 std::vector<const suite::SuiteCase*> chosen(const std::string& what,
                                             const std::vector<std::string>& traces,
@@ -71,7 +67,7 @@ std::vector<const suite::SuiteCase*> chosen(const std::string& what,
             : traces.empty() ? suite::Cases::own()
                              : suite::Cases::of(traces);
   } catch (const std::runtime_error& error) {
-    input_error(error.what());
+    cli::unreadable("chart", error.what());
   }
   std::vector<const suite::SuiteCase*> out;
   std::vector<std::string> names;

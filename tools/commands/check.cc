@@ -58,11 +58,12 @@ constexpr const char* kCheckFooter =
     "Exit codes: 0 as expected (weak findings, strays, notes and what stays inconclusive beside\n"
     "decided things included), 1 an unexpected failure, or an expectation that is not true, 2 the\n"
     "kit broke, 3 nothing but inconclusive: no rule was found kept or broken,\n"
-    "64 usage, 66 input cannot be read, or a source broke off and nothing failed, 74\n"
+    "64 usage, 66 input cannot be read, or is damaged or broke off and nothing failed, 74\n"
     "output cannot be written.";
 
-// Adds a file to a run, as every command reads captures; a log is taken whole.
-void add_file(const CheckOptions& options, const std::string& file, check::RunReader& reader) {
+// Adds a file to a run, as every command reads captures; a log is taken whole. Returns false if it
+// has damaged places.
+bool add_file(const CheckOptions& options, const std::string& file, check::RunReader& reader) {
   const std::string name = file == "-" ? "stdin" : file;
   bool is_log = false;
   std::string error;
@@ -86,13 +87,16 @@ void add_file(const CheckOptions& options, const std::string& file, check::RunRe
   one.prints = false;
   const cli::InputResult result = cli::read_packets(one, take, {}, logs);
   if (!error.empty()) cli::unreadable(kCheckCommand, error);
-  if (result.empty || (result.failed && !result.damaged)) cli::exit_with(cli::kExitInput);
+  if (result.failed && !result.damaged) cli::exit_with(cli::kExitInput);
   if (!is_log && !index) reader.open(name);
+  return !result.damaged;
 }
 
-check::Run read_run(const CheckOptions& options) {
+check::Run read_run(const CheckOptions& options, bool& undamaged) {
   check::RunReader reader(align_options(options));
-  for (const std::string& file : options.input.files) add_file(options, file, reader);
+  for (const std::string& file : options.input.files) {
+    undamaged = add_file(options, file, reader) && undamaged;
+  }
   return reader.finish();
 }
 
@@ -108,13 +112,15 @@ int check_files(const CheckOptions& options) {
   }
   keep_outputs_apart(options);
   const report::KnownFailures expected = expectations(options);
-  check::Run whole = read_run(options);
+  bool undamaged = true;
+  check::Run whole = read_run(options, undamaged);
   check::Run part = ranges.empty() ? std::move(whole) : report::part_of(whole, ranges, judged);
   if (std::string error; !check::drop_duplicates(part, judged, error)) {
     cli::unreadable(kCheckCommand, error);
   }
   const check::Report found = check::judge(part, judged);
-  const report::Outcome outcome = report::compare(part, judged, found, expected);
+  report::Outcome outcome = report::compare(part, judged, found, expected);
+  outcome.input_missing = !undamaged;
   const report::Story story{part, judged, found, expected, outcome};
   const int terminal = options.out == "-" ? STDOUT_FILENO : -1;
   const bool written = cli::write_file(options.out, report_text(options, story, terminal, files));
@@ -161,10 +167,12 @@ int check_each_run(const CheckOptions& options) {
                      CheckOptions one = options;
                      one.input.files = {file};
                      one.input.progress = false;
-                     check::Run run = read_run(one);
+                     bool undamaged = true;
+                     check::Run run = read_run(one, undamaged);
                      check::Options its = judged;
                      const check::Report found = check::judge(run, its);
-                     const report::Outcome outcome = report::compare(run, its, found, expected);
+                     report::Outcome outcome = report::compare(run, its, found, expected);
+                     outcome.input_missing = !undamaged;
                      members = line_members({run, its, found, expected, outcome});
                      return outcome.exit_code();
                    });

@@ -163,15 +163,13 @@ class Session {
     bool written = !kept_ || (failed && !kept_->is_started()) || kept_->finish();
     judge();
     if (!refused_.empty()) cli::unreadable(kCheckCommand, refused_);
-    const report::Outcome outcome =
-        report::compare(follow_.run(), judged_, follow_.report(), expected_);
+    report::Outcome outcome = report::compare(follow_.run(), judged_, follow_.report(), expected_);
+    outcome.input_missing = failed;
     const bool again = !has_lines_ || !options_.write.path.empty();
     written = news_.report({follow_.run(), judged_, follow_.report(), expected_, outcome},
                            again ? names_ : std::vector<std::string>()) &&
               written;
-    if (!written) return cli::kExitOutput;
-    const int code = outcome.exit_code();
-    return failed && code != cli::kExitFindings ? cli::kExitInput : code;
+    return written ? outcome.exit_code() : cli::kExitOutput;
   }
 
   const CheckOptions& options_;

@@ -268,7 +268,8 @@ void add_coverage(cli::Command& app) {
       "Counts for each rule of behaviour: golden traces that ask for it, golden traces that "
       "forbid\n"
       "something by it, steps of the machine that name it in these traces, and named mutants that\n"
-      "break it; and says whether the explorer meets it in small networks.\n"
+      "break it; and says whether the explorer meets it in small networks. Which rules of another\n"
+      "protocol its traces try, 'rubric test --protocol' says.\n"
       "Exit codes: 0 covered, 1 a MUST without a case, a forbidding rule that no case attempts, "
       "or\n"
       "a case that is wrong, 64 usage, 66 the cases cannot be read, 74 output cannot be written.");

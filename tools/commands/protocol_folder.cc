@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "codec/reflect/suggest.h"
 #include "conformance/trace/protocol.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/specs.h"
@@ -30,8 +31,17 @@ void use_protocol(const char* command, const std::string& folder,
   cli::use_requirements_of((fs::path(folder) / "requirements.yaml").string());
   // A name is a shipped spec, name.ksy a file of the folder.
   const auto find_wire = [&](const std::string& name) -> const reflect::Protocol& {
-    const bool file = name.ends_with(".ksy");
-    return cli::protocol_of(file ? (fs::path(folder) / name).string() : name);
+    const std::vector<std::string> shipped = cli::protocol_names();
+    if (trace::is_among(shipped, name)) return cli::protocol_of(name);
+    const std::string file = (fs::path(folder) / name).string();
+    if (!name.ends_with(".ksy")) {
+      throw std::invalid_argument(fmt::format(
+          "expected a .ksy file of the folder, or a shipped spec (rubric decode --spec list), "
+          "given '{}'{}",
+          name, reflect::did_you_mean(name, shipped)));
+    }
+    if (!fs::exists(file)) throw std::invalid_argument("no file " + file);
+    return cli::protocol_of(file);
   };
   try {
     trace::use(trace::read_protocol(text, app, find_wire));

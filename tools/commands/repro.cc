@@ -16,7 +16,7 @@
 #include "tools/cli/command.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/output.h"
-#include "tools/cli/text_file.h"
+#include "tools/cli/verdict.h"
 #include "tools/commands/commands.h"
 
 namespace rubric::tools {
@@ -99,12 +99,7 @@ Repro repro_network(Bytes bytes, const ReproOptions& options) {
 
 void run_repro(const ReproOptions& options) {
   cli::keep_apart("--out", options.out, {options.input});
-  std::string text;
-  std::string error;
-  if (!cli::read_file(options.input, text, error)) {
-    text::print(stderr, "{}\n", error);
-    cli::exit_with(cli::kExitInput);
-  }
+  const std::string text = cli::text_of_file("repro", options.input);
   const Bytes bytes(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
   const Repro repro = options.fuzzer == "network" ? repro_network(bytes, options)
                       : options.fuzzer == "nodes" ? repro_nodes(bytes)

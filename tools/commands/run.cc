@@ -85,6 +85,7 @@ constexpr const char* kRunFooter =
     "written.";
 
 constexpr std::uint16_t kDeviceMax = 0xFFFC;
+constexpr const char* kNoBroker = "needs a space at a broker (--space)";
 
 run::StationSetup setup_of(const RunOptions& options) {
   run::StationSetup setup;
@@ -177,6 +178,9 @@ int run_file(const RunOptions& options) {
   if (!options.space.empty()) ecology.space = options.space;
   if (options.seed) ecology.seed = *options.seed;
   ecology.gone_after_s = options.gone_after_s;
+  if (options.home_assistant && ecology.space.empty()) {
+    throw cli::UsageError("--home-assistant", kNoBroker);
+  }
   ecology.home_assistant = options.home_assistant;
   run::Keeper keeper;
   open_files(options, run::nodes_of(ecology), ecology.seed, keeper);
@@ -224,6 +228,9 @@ void check_run(const RunOptions& options) {
   }
   if (!options.is_base_station() && !options.space.empty()) {
     throw cli::UsageError("--space", "is a base station's");
+  }
+  if (options.home_assistant && options.space.empty()) {
+    throw cli::UsageError("--home-assistant", kNoBroker);
   }
   check_names(options);
 }
@@ -380,15 +387,13 @@ void add_run(cli::Command& app) {
       .show_default();
   sub.add_option("--seed", options->seed, "Seed waits, losses and the first number");
   cli::add_write_options(sub, options->write, "Keep all frames in this pcapng file", true);
-  const cli::Option with_space =
-      sub.add_option(
-             "--space", options->space,
-             "Publish a base station's island in the tuple space of this MQTT broker, mqtt:// or "
-             "mqtts://, with its root of topics; other base stations there are its PEIS")
-          .check(is_space, "mqtt://HOST:PORT/ROOT");
+  sub.add_option(
+         "--space", options->space,
+         "Publish a base station's island in the tuple space of this MQTT broker, mqtt:// or "
+         "mqtts://, with its root of topics; other base stations there are its PEIS")
+      .check(is_space, "mqtt://HOST:PORT/ROOT");
   sub.add_flag("--home-assistant", options->home_assistant,
-               "Announce the sensors of motes to Home Assistant, below homeassistant/sensor")
-      .needs(with_space);
+               "Announce the sensors of motes to Home Assistant, below homeassistant/sensor");
   sub.add_option("--credentials", options->credentials,
                  "Read user=, password=, ca=, cert= and key= for the broker from this file; else "
                  "RUBRIC_MQTT_USER and RUBRIC_MQTT_PASSWORD are taken")

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "codec/generated/tinyos/enums.h"
+#include "codec/lines/stop.h"
 #include "codec/reflect/encode_number.h"
 #include "codec/reflect/registry.h"
 #include "codec/text/text.h"
@@ -130,6 +131,9 @@ bool EncodedLines::all() {
     try {
       Lines lines(name, before_read_);
       encode_next(lines);
+      if (lines.number() == 0 && !lines::stop_requested()) {
+        text::print(stderr, "rubric: {}: is empty\n", file_);
+      }
     } catch (const std::system_error& error) {
       complain(file_, error.code().message());
     }
@@ -245,6 +249,8 @@ bool Lines::next(std::string_view& line) {
     if (whole || (rest_.empty() && !fill())) break;
   }
   if (line.ends_with('\r')) line.remove_suffix(1);
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  if (number_ == 1 && line.starts_with(kByteOrderMark)) line.remove_prefix(kByteOrderMark.size());
   return true;
 }
 

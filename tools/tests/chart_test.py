@@ -185,7 +185,7 @@ class Chart(unittest.TestCase):
         for words, code, text in [
                 (["j4.wrongseq"], 64, "did you mean 'j4.wrong_seq'"),
                 (["conformance/cases/j4.rtr:j4.acept"], 64, "did you mean 'j4.accept'"),
-                (["no_such.rtr"], 66, "no_such.rtr: no such file"),
+                (["no_such.rtr"], 66, "no_such.rtr: No such file"),
                 (["j4.accept", "--target", "machine:no_fial"], 64, "no_fial"),
                 ([""], 64, "")]:
             with self.subTest(words=words):

@@ -340,12 +340,27 @@ class Inputs(Folder):
         self.assertEqual((code, err), (3, ""))
         self.assertIn("No frames of this protocol: there is nothing to judge.", out)
         self.assertEqual(as_json(beacons)["verdict"], "inconclusive")
+        empty = self.write("empty", b"")
+        code, out, err = check(empty)
+        self.assertEqual((code, err), (3, f"rubric: {empty}: is empty\n"))
+        self.assertIn("nothing could be judged", out)
+
+    def test_a_cut_capture_is_no_pass(self):
+        cut = self.write("cut.pcapng", CLEAN.read_bytes()[:-30])
+        code, out, err = check(cut)
+        self.assertEqual(code, 66, out)
+        self.assertIn("damaged at byte", err)
+        self.assertIn("Verdict: pass, but input is damaged or missing: 0 failures", out)
+        self.assertEqual(as_json(cut)["exit_code"], 66)
+        code, out, _ = check("--each", cut)
+        self.assertEqual(code, 66, out)
+        failing = self.write("failing.pcapng", WRONG_SEQ.read_bytes() + b"x")
+        self.assertEqual(check(failing)[0], 1)
 
     def test_unreadable(self):
         for path, says in [
             (self.folder / "none.pcapng", "No such file or directory"),
             (self.folder, "Is a directory"),
-            (self.write("empty", b""), "empty"),
             (self.write("garbage", bytes(range(128, 256)) * 9), "begins like no serial line"),
         ]:
             code, out, err = check(path)
@@ -388,7 +403,7 @@ class Inputs(Folder):
         code, out, _ = check("-", stdin=WRONG_SEQ.read_bytes())
         self.assertEqual(code, 1)
         self.assertIn("FAIL J4-SEQ, mote 2, frame 3", out)
-        self.assertEqual(check("-")[0], 66)
+        self.assertEqual(check("-")[::2], (3, "rubric: stdin: is empty\n"))
 
     def test_frames(self):
         self.assertEqual(as_json(WRONG_SEQ, "--frames", "1..2")["counts"]["fail"], 0)

@@ -5,6 +5,7 @@ Usage: commands_test.py RUBRIC.
 """
 
 import json
+import os
 import pathlib
 import re
 import struct
@@ -98,7 +99,22 @@ class Fcs(Folder):
     def test_an_empty_file_is_named(self):
         file = self.folder / "empty.pcap"
         file.touch()
-        self.assertEqual(rubric("decode", file), (0, b"", f"rubric: {file}: is empty\n"))
+        for words in (("decode", file), ("stats", file), ("encode", file),
+                      ("convert", file, "-o", os.devnull, "--format", "hex")):
+            code, _, err = rubric(*words)
+            self.assertEqual((code, err), (0, f"rubric: {file}: is empty\n"), words)
+
+    def test_texts_of_windows(self):
+        packet = "00 FF FF 00 00 03 00 25 0A 00 0C\r\n"
+        expected = rubric("decode", stdin=packet.encode())
+        self.assertEqual(expected[0], 0)
+        self.assertEqual(rubric("decode", stdin=b"\xef\xbb\xbf" + packet.encode()), expected)
+        code, _, err = rubric("decode", stdin=packet.encode("utf-16"))
+        self.assertEqual(code, 66)
+        self.assertIn("this is UTF-16 text", err)
+        line = b'\xef\xbb\xbf{"type":10,"value":12}\r\n'
+        self.assertEqual(rubric("encode", "--as", "config", stdin=line),
+                         (0, b"00 FF FF 00 00 03 00 25 0A 00 0C\n", ""))
 
 
 class Encode(Folder):

@@ -3,6 +3,7 @@
 
 Usage: each_test.py RUBRIC
 """
+import gzip
 import json
 import os
 import pathlib
@@ -79,6 +80,15 @@ class Each(testing.Folder):
         none = run("check", "--each", self.runs / "none*")
         self.assertEqual(none.returncode, USAGE)
         self.assertIn("holds no runs", none.stderr)
+
+    def test_compressed_runs_of_a_folder(self):
+        packed = self.folder / "packed"
+        packed.mkdir()
+        (packed / "run.pcapng.gz").write_bytes(gzip.compress(CAPTURES[0].read_bytes()))
+        (packed / "notes.txt.gz").write_bytes(gzip.compress(b"no capture"))
+        plain, = lines(run("check", "--each", CAPTURES[0]).stdout)
+        found, = lines(run("check", "--each", packed).stdout)
+        self.assertEqual((found["frames"], found["failures"]), (plain["frames"], plain["failures"]))
 
     def test_shards(self):
         for shards in (1, 2, 3, 7):

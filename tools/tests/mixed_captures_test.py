@@ -302,11 +302,24 @@ class Mixed(Captures):
         plain = CAPTURES["dongle.pcap"]
         wanted = rubric("decode", self.path / "dongle.pcap")[1]
         self.assertEqual(rubric("decode", stdin=gzip.compress(plain))[1], wanted)
-        half = gzip.compress(plain)[:-600]
-        code, out, err = rubric("decode", stdin=half)
-        self.assertEqual(code, NO_INPUT)
-        self.assertIn("its compressed data end too soon", err)
-        self.assertTrue(wanted.startswith(out))
+        whole = gzip.compress(plain)
+        packed = self.path / "cut.pcap.zst"
+        rubric("convert", self.path / "dongle.pcap", packed)
+        for cut in (whole[:len(whole) * 3 // 4], packed.read_bytes()[:-60]):
+            code, out, err = rubric("decode", stdin=cut)
+            self.assertEqual(code, NO_INPUT)
+            self.assertIn(f"stdin: damaged at byte {len(cut)}: its compressed data end too soon",
+                          err)
+            frames = [line for line in out.splitlines() if line.startswith(" ")]
+            while frames and frames[-1] not in wanted:  # Of a frame that is cut.
+                frames.pop()
+            self.assertEqual(frames, wanted.splitlines()[:len(frames)])
+            if cut in whole:  # zstd has blocks of 128 KiB.
+                self.assertGreater(len(frames), 10)
+        spoilt = whole[:-6] + bytes([whole[-6] ^ 1]) + whole[-5:]  # The checksum.
+        code, out, err = rubric("decode", stdin=spoilt)
+        self.assertEqual((code, out), (NO_INPUT, wanted))
+        self.assertRegex(err, "damaged at byte [0-9]+: its gzip data are damaged")
         code, _, err = rubric("decode", "--follow", self.path / "packed.pcap.gz")
         self.assertEqual(code, NO_INPUT)
         self.assertIn("it is compressed", err)

@@ -52,6 +52,16 @@ class Protocol(testing.Folder):
         for name in ("Probes", "7up", "a-b", ""):
             self.assertEqual(self.rubric("new-protocol", name)[0], 64, name)
 
+    def test_a_trace_that_cannot_be_read_is_named(self):
+        probes = self.new()
+        (probes / "cases/more.rtr").symlink_to("nowhere")
+        code, _, err = self.rubric("test", "--protocol", "probes", "--list")
+        self.assertEqual(code, 66)
+        self.assertIn("probes/cases/more.rtr: No such file or directory", err)
+        (self.folder / "endless.rtr").symlink_to("/dev/zero")
+        code, _, err = self.rubric("test", "--protocol", "probes", "--list", "endless.rtr")
+        self.assertEqual((code, err), (66, "rubric test: endless.rtr: File too large\n"))
+
     def test_decode_reads_its_frames(self):
         self.new()
         (self.folder / "frame.hex").write_text("00 00 01 00 05 03 00 a2 07 00 d7\n")
@@ -155,8 +165,13 @@ class Protocol(testing.Folder):
                  "level: SHALL\n  clause: answers\n  sentence: \"A node answers",
                  ":3:10: error: level is 'SHALL'"),
                 (app, "calls:", "callls:", ":12:1: 'callls' is no key of a protocol; known are"),
-                (app, "probes.ksy", "nothing.ksy", "nothing.ksy"),
-                (app, "probes.ksy", "probs", "unknown protocol 'probs'"),
+                (app, "probes.ksy", "nothing.ksy", ":3:7: no file probes/nothing.ksy"),
+                (rules, "- id: ANSWER-NUMBER\n", "- id: ANSWER-NUMBER\n  roles: [node]\n",
+                 ":3:3: error: unknown key 'roles' of a requirement; known are id"),
+                (app, "probes.ksy", "probs",
+                 ":3:7: expected a .ksy file of the folder, or a shipped"),
+                (app, "probes.ksy", "osciloscope", "(did you mean 'oscilloscope'?)"),
+                (app, "probes.ksy", "list", "given 'list'"),
                 (probes / "probes.ksy", "type: u2", "type: u3", "unknown type 'u3'")]:
             with self.subTest(new):
                 before = path.read_text()

@@ -393,6 +393,7 @@ islands:
         island = "islands:\n  - island: 11\n"
         for text, line, what in (
                 ("loss: 5\nislans: []\n", 2, "unknown key 'islans'"),
+                ("", 1, "the file: expected keys and values"),
                 ("loss: 101\n" + island, 1, "from 0 to 100"),
                 (island + "  - island: 11\n", 3, "there is an island 11 already"),
                 (island + "    radio: sf@x:1\n", 3, "expected zep:PORT"),
@@ -411,6 +412,11 @@ islands:
             self.assertEqual(run.returncode, 64, run.stderr)
             self.assertIn(f"{plan}:{line}: ", run.stderr)
             self.assertIn(what, run.stderr)
+        plan.write_text(island, encoding="utf-8")
+        run = subprocess.run([RUBRIC, "run", plan, "--home-assistant"], capture_output=True,
+                             check=False, text=True, stdin=subprocess.DEVNULL)
+        self.assertEqual(run.returncode, 64)
+        self.assertIn("--home-assistant: needs a space at a broker", run.stderr)
 
     def test_a_base_station_comes_back_to_its_sink(self):
         place = socket.create_server(("127.0.0.1", 0))
@@ -429,6 +435,17 @@ islands:
         place.close()
         self.assertEqual(base.end()[0], 0)
 
+    def test_a_sink_has_one_base_station(self):
+        sink = self.started("sink", "--island", "11", "--radio", "zep:0", "--serial", "sf-server:0")
+        serial = "sf@127.0.0.1:" + sink.waits_for(rb"sf-server:(\d+)\n")
+        first = self.started("base-station", "--island", "11", "--sink", serial)
+        first.waits_for(rb"(connected)")
+        second = self.started("base-station", "--island", "11", "--sink", serial)
+        second.waits_for(rb"(it may serve another program)")
+        sink.waits_for(rb"(another program was turned away)")
+        first.process.kill()
+        second.waits_for(rb"(connected)")
+
     def test_clear_errors(self):
         for arguments, text in (
                 (("mote",), "--id: a mote needs one"),
@@ -445,6 +462,8 @@ islands:
                 (("base-station", "--island", "11", "--space", "http://x"), "mqtt://HOST"),
                 (("base-station", "--island", "11", "--space", "mqtt://me:secret@x"),
                  "into a file or the environment"),
+                (("base-station", "--island", "11", "--home-assistant"),
+                 "--home-assistant: needs a space at a broker"),
                 (("robot",), "expected mote, sink, base-station, proxy or FILE.yaml")):
             run = subprocess.run([RUBRIC, "run", *arguments], capture_output=True, check=False,
                                  text=True, stdin=subprocess.DEVNULL)

@@ -256,6 +256,29 @@ class Space(LiveTest):
                 subscriber.state(one["topic"], "online")
         self.assertEqual(config["unit_of_measurement"], "\u00b0C")
 
+    def test_home_assistant_forgets_sensors_that_a_mote_lost(self):
+        found = subprocess.Popen([*self.broker.client("mosquitto_sub"), "-t", "homeassistant/#",
+                                  "-F", "%t %p"], stdout=subprocess.PIPE, text=True)
+        self.addCleanup(found.stdout.close)
+        self.addCleanup(found.wait)
+        self.addCleanup(found.kill)
+
+        def announced():
+            topic, text = found.stdout.readline().rstrip("\n").split(" ", 1)
+            return topic.split("/")[3], bool(text)
+
+        both = {("light", True), ("temp", True)}
+        base, air = self.island(11, "--home-assistant")
+        mote = self.mote(5, air)
+        self.assertEqual({announced(), announced()}, both)
+        for running in (mote, base):
+            running.process.kill()
+            running.process.wait()
+        _, air = self.island(11, "--home-assistant")
+        self.assertEqual({announced(), announced()}, both)  # By what its tuple says.
+        self.started("mote", "--id", 5, "--radio", air, "--app", "demo", "--transducers", "light")
+        self.assertEqual({announced(), announced()}, {("light", True), ("temp", False)})
+
     def test_foreign_input_is_refused(self):
         subscriber = Subscriber(self, self.broker, "rubicon/11/events")
         base, air = self.island(11)

@@ -5,8 +5,10 @@ Usage: specs_test.py RUBRIC; run in the project's folder.
 """
 
 import json
+import os
 import pathlib
 import re
+import resource
 import tempfile
 import unittest
 
@@ -57,6 +59,10 @@ types:
   list:
     seq: [{id: count, type: u1}, {id: values, type: u2, repeat: expr, repeat-expr: count}]
 """
+
+
+def little_memory():
+    resource.setrlimit(resource.RLIMIT_AS, (1 << 30, 1 << 30))
 
 
 def rubric(*args, stdin=""):
@@ -305,6 +311,25 @@ class File(Folder):
                           "    seq: [{id: a, type: u1}]\n")
         done = rubric("decode", "--spec", radio, stdin="")
         self.assertIn("carrier radio_t does not end in a message", done.stderr)
+
+    def test_files_that_never_end_are_refused_at_once(self):
+        endless, pipe, large, folder = (self.folder / f"{name}.ksy"
+                                        for name in ("endless", "pipe", "large", "folder"))
+        endless.symlink_to("/dev/zero")
+        os.mkfifo(pipe)
+        with large.open("wb") as file:
+            file.truncate(3 << 30)
+        folder.mkdir()
+        other = "not a regular file"
+        for path, says in ((endless, other), (pipe, other), (folder, other),
+                           (large, "the file is too large; at most 1 MiB is read")):
+            for command in (("decode",), ("messages",)):
+                done = run(*command, "--spec", path, input="", text=True, preexec_fn=little_memory)
+                self.assertEqual((done.returncode, done.stdout), (66, ""))
+                self.assertEqual(done.stderr, f"{path}: error: {says}\n")
+        importing = self.file(PLAIN.replace("  id: plain", "  id: plain\n  imports: [pipe]"))
+        done = rubric("decode", "--spec", importing, stdin="")
+        self.assertIn(f"{pipe}: error: {other}", done.stderr)
 
     def test_wireshark_gets_the_file_as_well(self):
         file = self.file(pathlib.Path("spec/wire/run_time/blink_to_radio.ksy").read_text(

@@ -231,7 +231,7 @@ class Usage(Folder):
         empty = self.folder / "empty"
         empty.mkdir()
         for traces, says in [
-            (self.folder / "none.rtr", "no such file or folder"),
+            (self.folder / "none.rtr", "No such file or directory"),
             (empty, "no .rtr file"),
             (self.write("bad.rtr", "%rtr 1\ncase x\n  0 m5 < app jion()\n"), "bad.rtr:3:"),
             (self.write("iut.rtr", "%rtr 1\n%node m5 mote id=5\ncase x\n"), "no node under test"),

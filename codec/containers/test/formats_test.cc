@@ -198,6 +198,42 @@ TEST(WireHex, WordsAndNumbersOfALogAreNoPackets) {
   EXPECT_EQ(reader->noise().lines, 5u);
 }
 
+TEST(WireHex, StampsOfALogArePassedOver) {
+  const std::string packet = "00 ff ff 00 00 04 22 06 00 02 00 01";
+  for (const std::string stamp :
+       {"[12.345] ", "[2026-11-24 13:55:05.123] ", "12.345 ", "1700000000.123456\t",
+        "12:34:56.789 -> ", "Nov 24 13:55:05 ", "Dec  4 13:55:05 ", "2026-11-24 13:55:05,123 ",
+        "2026-11-24T13:55:05+0100 ", "24/11/2026 13:55 "}) {
+    const std::string log = stamp + "serial@/dev/ttyUSB0:115200: resynchronising\n" + stamp +
+                            packet + "\r\n" + stamp + "\n" + stamp + packet + "g\n";
+    EXPECT_EQ(detect(view(log.substr(0, log.size() - 2))), InputFormat::kLog) << log;
+    EXPECT_EQ(detect(view(stamp + packet)), InputFormat::kLog) << log;
+    const auto reader = make_reader(InputFormat::kLog);
+    const std::vector<Kept> got = read_all(*reader, view(log));
+    ASSERT_EQ(got.size(), 2u) << log;
+    EXPECT_EQ(got[0].packet.error, kSound);
+    EXPECT_EQ(got[0].packet.time_ns, kNoTime);
+    EXPECT_EQ(got[0].bytes.size(), 12u);
+    EXPECT_EQ(got[1].packet.error.offset_bytes, stamp.size() + packet.size());
+    EXPECT_EQ(reader->noise().lines, 1u);
+  }
+  for (const char* none : {"00 ff", "12:34 ", "0010: 00 ff", "[00 ff", "[] 00", "dec 4 00",
+                           "12. 00", "1.2.3 00", "2026-11-24 00", "serial@x:1.2"}) {
+    const bool clock = std::string_view(none) == "12:34 ";
+    EXPECT_EQ(stamp_size(view(none)), clock ? 6u : 0u) << none;
+  }
+}
+
+TEST(WireHex, AMarkBeforeTheTextIsPassedOver) {
+  for (const std::string text : {"00 ff ff 00 00 04 22 06 00 02 00 01\n", "# note\n00 ff\n"}) {
+    EXPECT_EQ(detect(view("\xEF\xBB\xBF" + text)), InputFormat::kHex);
+    const auto reader = make_reader(InputFormat::kHex);
+    const std::vector<Kept> got = read_all(*reader, view("\xEF\xBB\xBF" + text));
+    ASSERT_EQ(got.size(), 1u);
+    EXPECT_NE(got[0].packet.error.fault, Fault::kUnexpected);
+  }
+}
+
 TEST(WireHex, LinesThatEndWithTheirFcs) {
   EXPECT_TRUE(lines_end_with_fcs(view("02 00 01 31 a4\n")));
   EXPECT_TRUE(lines_end_with_fcs(view("hello\n02 00 01 31 a4\n02 00 01 31 a5\n")));

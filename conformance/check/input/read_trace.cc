@@ -110,7 +110,8 @@ class LogReader {
   }
 
   std::int64_t us_of(std::int64_t ticks) const {
-    return ticks * 1'000'000 / trace::ticks_per_second(scope_.tick);
+    const std::int64_t per_second = trace::ticks_per_second(scope_.tick);
+    return ticks / per_second * 1'000'000 + ticks % per_second * 1'000'000 / per_second;
   }
 
   void take(const Line& line) {
@@ -233,6 +234,7 @@ class LogReader {
 }  // namespace
 
 bool looks_like_trace(std::string_view bytes) {
+  if (bytes.starts_with(trace::kByteOrderMark)) bytes.remove_prefix(trace::kByteOrderMark.size());
   while (!bytes.empty()) {
     const std::size_t end = bytes.find('\n');
     std::string_view line = bytes.substr(0, end);

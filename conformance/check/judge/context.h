@@ -25,6 +25,14 @@ struct Said {
   std::vector<Hypothesis> hypotheses;
 };
 
+/// Returns by how much a clock of 32 bits has grown between two readings: of the growths that wrap
+/// to the second one, the nearest to the time that passed.
+inline std::int64_t grown_ms_of(std::uint32_t from_ms, std::uint32_t to_ms,
+                                std::int64_t passed_ms) {
+  const std::uint32_t expected_ms = from_ms + static_cast<std::uint32_t>(passed_ms);
+  return passed_ms + static_cast<std::int32_t>(to_ms - expected_ms);
+}
+
 struct Context {
   Context(const Run& r, const Options& o, const Identity& w, Findings& f)
       : run(r), options(o), who(w), findings(f) {}

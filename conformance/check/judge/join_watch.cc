@@ -252,7 +252,7 @@ void JoinWatch::clock_told(std::uint16_t mote, const Observation& seen, std::uin
       return;
     }
     const std::int64_t passed_ms = (seen.place.time_us - h.accepted_us) / 1000;
-    const std::int64_t grown_ms = static_cast<std::int32_t>(ms - reply.time_ms);
+    const std::int64_t grown_ms = grown_ms_of(reply.time_ms, ms, passed_ms);
     // A clock in binary ms runs 2.4 % faster than one in ms.
     if (grown_ms >= passed_ms - kClockOffMs &&
         grown_ms <= passed_ms + passed_ms * 24 / 1000 + kClockOffMs) {

@@ -350,8 +350,8 @@ void SinkJoins::judge_clock(SinkWatch& sink, const Observation& seen, const Repl
   const bool stepped = check::stepped(context_.run.steps, sink.clock_us, now);
   if (!sink.has_clock || stepped || reply.time_ms != sink.clock_ms) sink.still_us = now;
   if (sink.has_clock && seen.place.timed() && sink.clock_us >= 0 && !stepped) {
-    const std::int64_t grown_ms = static_cast<std::int32_t>(reply.time_ms - sink.clock_ms);
     std::int64_t passed_ms = (now - sink.clock_us) / 1000;
+    const std::int64_t grown_ms = grown_ms_of(sink.clock_ms, reply.time_ms, passed_ms);
     // Replies that follow each other fast stand still together.
     if (grown_ms == 0 && passed_ms < kOffMs) passed_ms = (now - sink.still_us) / 1000;
     // A clock in binary ms runs 2.4 % faster than one in ms.
@@ -361,9 +361,11 @@ void SinkJoins::judge_clock(SinkWatch& sink, const Observation& seen, const Repl
     said.text = "cur_time went from " + number(sink.clock_ms) + " to " + number(reply.time_ms) +
                 " while " + number(static_cast<std::uint64_t>(passed_ms)) + " ms passed.";
     said.expected = "Growth as time passes, within 1 s.";
-    if (grown_ms == 0 && passed_ms >= kOffMs) {
+    const bool off = grown_ms < passed_ms - kOffMs || grown_ms > most_ms;
+    const bool still = reply.time_ms == sink.clock_ms && passed_ms >= kOffMs;
+    if (still && (off || grown_ms == 0)) {
       context_.report("J3-TIME"_rule, Severity::kFail, seen.place, sink.device, std::move(said));
-    } else if (grown_ms < passed_ms - kOffMs || grown_ms > most_ms) {
+    } else if (off) {
       context_.report("J3-DRIFT"_rule, Severity::kWeak, seen.place, sink.device, std::move(said));
     } else {
       context_.findings.kept("J3-TIME"_rule);

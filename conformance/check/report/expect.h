@@ -35,12 +35,17 @@ struct Outcome {
   std::uint64_t unexpected_failures = 0;
   std::uint64_t broken_expectations = 0;  ///< Stale, or with another message.
   bool nothing_judged = false;            ///< No rule had its chance to be broken.
+  bool input_missing = false;             ///< A file is damaged or cut, or a source broke off.
   /// The report's verdict; inconclusive if nothing could be judged.
   check::Verdict verdict = check::Verdict::kPass;
 
   bool as_expected() const { return unexpected_failures == 0 && broken_expectations == 0; }
-  /// Returns 0 as expected, 1 not, 3 nothing but inconclusive.
-  int exit_code() const { return !as_expected() ? 1 : nothing_judged ? 3 : 0; }
+  /// Returns 0 as expected, 1 not, 3 nothing but inconclusive, 66 as expected in what there is.
+  int exit_code() const {
+    if (!as_expected()) return 1;
+    if (input_missing) return 66;
+    return nothing_judged ? 3 : 0;
+  }
 };
 
 /// Reads a file's text as parse_known_failures() does.

@@ -334,6 +334,7 @@ class TextReport {
     } else if (outcome.nothing_judged) {
       verdict += ", nothing could be judged";
     }
+    if (outcome.input_missing) verdict += ", but input is damaged or missing";
     const bool good = outcome.exit_code() == 0;
     out_ += '\n';
     styled_line(good ? "1;32" : "1;31", "Verdict:", fmt::format("{}: {}.", verdict, text));

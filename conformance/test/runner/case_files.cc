@@ -1,9 +1,12 @@
 #include "conformance/test/runner/case_files.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <fstream>
-#include <iterator>
+#include <cstring>
 #include <stdexcept>
+
+#include "codec/text/files.h"
 
 namespace rubric::runner {
 
@@ -21,8 +24,11 @@ std::vector<trace::Parsed> load_cases(const std::filesystem::path& folder) {
   std::vector<trace::Parsed> files;
   std::string errors;
   for (const auto& path : paths) {
-    std::ifstream in(path, std::ios::binary);
-    const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+    std::string text;
+    if (const int code = text::read_file(path, text)) {
+      errors += fmt::format("{}: {}\n", path.generic_string(), std::strerror(code));
+      continue;
+    }
     files.push_back(trace::parse(text, path.generic_string()));
     errors += files.back().errors();
   }

@@ -25,10 +25,6 @@ bool is_counted_from(const Line& line) { return line.op != Op::kMustNot && line.
 
 }  // namespace
 
-Ticks ticks_of(trace::Tick unit, std::int64_t time) {
-  return machine::ticks_of(time, trace::ticks_per_second(unit));
-}
-
 bool is_weak(const trace::Line& line) {
   return !line.requirements.empty() &&
          std::all_of(line.requirements.begin(), line.requirements.end(), [](const auto& name) {

@@ -27,7 +27,8 @@ using trace::Line;
 using trace::Op;
 
 constexpr Ticks kLateTicks = 1500;  // How long a missing output is awaited beyond its time.
-constexpr Ticks kGrainTicks = 10;   // Of an adapter's own clock, or of its rate in a second.
+constexpr std::int64_t kLastTick = INT32_MAX;  // Clocks wrap after twice that.
+constexpr Ticks kGrainTicks = 10;  // Of an adapter's own clock, or of its rate in a second.
 
 // Returns a number that no trace uses by chance, another one for the next seed.
 std::int64_t seeded_number(std::uint64_t seed) {
@@ -151,8 +152,14 @@ class Run {
       }
       base = found->second;
     }
-    const Window window{base.time + amount(line, line.time.from, line.time.from_terms),
-                        base.time + amount(line, line.time.to, line.time.to_terms)};
+    const std::int64_t from = base.time + amount(line, line.time.from, line.time.from_terms);
+    const std::int64_t to = base.time + amount(line, line.time.to, line.time.to_terms);
+    if (std::max(from, to) > kLastTick) {
+      throw trace::TraceError(line.place,
+                              fmt::format("{} is too late: a case ends by tick {} (24 days)",
+                                          trace::print(line.time), kLastTick));
+    }
+    const Window window{static_cast<Ticks>(from), static_cast<Ticks>(to)};
     if (is_empty(window) && (line.op != Op::kMustNot || !states_anything())) {
       throw trace::TraceError(
           line.place,
@@ -171,11 +178,13 @@ class Run {
   }
 
   // Returns the ticks of a time, its parameters included, with the values of the line's node.
-  Ticks amount(const Line& line, std::int64_t number, const std::vector<trace::Term>& terms) const {
-    const Ticks size = ticks_of(scope_.tick, std::abs(number));
-    std::int64_t sum = number < 0 ? -static_cast<std::int64_t>(size) : size;
+  std::int64_t amount(const Line& line, std::int64_t number,
+                      const std::vector<trace::Term>& terms) const {
+    const std::int64_t size =
+        std::abs(number) * machine::kTicksPerSecond / trace::ticks_per_second(scope_.tick);
+    std::int64_t sum = number < 0 ? -size : size;
     for (const trace::Term& term : terms) sum += term.factor * value(line.node, term.parameter);
-    return static_cast<Ticks>(std::max<std::int64_t>(sum, 0));
+    return std::max<std::int64_t>(sum, 0);
   }
 
   // Nodes that state nothing themselves, since the trace plays them, are taken for the others'

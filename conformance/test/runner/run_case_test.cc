@@ -452,6 +452,19 @@ TEST(RunCase, WhatDiffersIsBlamedBeforeWhatForbidsTheSameOutput) {
   EXPECT_EQ(late.failures[0].requirements, std::vector<std::string>{"T2-ACK"});
 }
 
+TEST(RunCase, ATimeThatClocksCannotHoldIsAnError) {
+  for (const char* late :
+       {"@4294967400 m5 < app get_clock()\n", "@2147483648 m5 < app get_clock()\n",
+        "a: @2147483000 m5 < app get_clock()\n"
+        "a+0..700 m5 > app clock(*)\n"}) {
+    const CaseResult result = run(late, {});
+    EXPECT_EQ(result.verdict, CaseVerdict::kError) << late;
+    EXPECT_NE(result.reason.find("a case ends by tick 2147483647"), std::string::npos)
+        << result.reason;
+  }
+  EXPECT_EQ(run("@2147483647 m5 < app get_clock()\n", {}).verdict, CaseVerdict::kPass);
+}
+
 TEST(RunCase, NothingUnderTestIsAnError) {
   const trace::Parsed parsed =
       trace::parse("%rtr 1\n%profile paper\n%node m5 mote id=5\ncase x\n", "x.rtr");

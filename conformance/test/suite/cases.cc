@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <stdexcept>
 
+#include "codec/text/files.h"
 #include "conformance/test/runner/case_files.h"
 #include "conformance/test/runner/run_case.h"
 
@@ -59,9 +59,10 @@ SuiteCase suite_case(const trace::Parsed& file, const trace::Case& one) {
 }
 
 trace::Parsed read_file(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  if (!in.good() && !in.eof()) throw std::runtime_error(path.string() + ": cannot be read");
+  std::string text;
+  if (const int code = text::read_file(path, text)) {
+    throw std::runtime_error(path.string() + ": " + std::strerror(code));
+  }
   trace::Parsed file = trace::parse(text, path.generic_string());
   if (!file.ok()) throw std::runtime_error(file.errors());
   return file;
@@ -85,10 +86,8 @@ Cases Cases::of(const std::vector<std::string>& paths) {
   for (const std::string& path : paths) {
     if (std::filesystem::is_directory(path)) {
       for (trace::Parsed& file : runner::load_cases(path)) out.add(std::move(file));
-    } else if (std::filesystem::exists(path)) {
-      out.add(read_file(path));
     } else {
-      throw std::runtime_error(path + ": no such file or folder");
+      out.add(read_file(path));
     }
   }
   return out;

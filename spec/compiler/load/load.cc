@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <optional>
 
 #include "spec/compiler/load/read_spec.h"
@@ -17,14 +15,6 @@ namespace {
 constexpr std::size_t kSpecsMax = 100;
 constexpr int kFoldersAround = 8;
 const Library kNoLibrary;
-
-std::optional<std::string> read_file(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) return std::nullopt;
-  std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  if (in.bad()) return std::nullopt;
-  return text;
-}
 
 std::string beside(const std::string& file, const std::string& name) {
   const std::size_t slash = file.rfind('/');
@@ -56,12 +46,9 @@ class Loader {
       : model_(model), diagnostics_(diagnostics), library_(library) {}
 
   void named(const std::string& file) {
-    const auto text = read_file(file);
-    if (!text) {
-      diagnostics_.error({file, 0, 0}, "cannot be read", "");
-      return;
-    }
-    if (Spec* spec = load(file, *text)) spec->named = true;
+    const auto text = text_of_file(file, diagnostics_);
+    Spec* const spec = text ? load(file, *text) : nullptr;
+    if (spec) spec->named = true;
   }
 
   Spec* load(const std::string& file, const std::string& text) {
@@ -84,7 +71,11 @@ class Loader {
  private:
   void import(Spec& spec, const std::string& name, const SourcePlace& place) {
     std::string file = file_of(spec.file, name);
-    auto text = is_plain(name) && open_.size() < kSpecsMax ? read_file(file) : std::nullopt;
+    std::optional<std::string> text;
+    if (is_plain(name) && open_.size() < kSpecsMax && std::filesystem::exists(file)) {
+      text = text_of_file(file, diagnostics_);
+      if (!text) return;
+    }
     if (const auto shipped = library_.find(name); !text && shipped != library_.end()) {
       file = shipped_file(name);
       text = shipped->second;

@@ -20,8 +20,11 @@ void load_specs(const std::vector<std::string>& files, Model& model, Diagnostics
 /// Reads a spec of the library, as "<shipped>/name.ksy".
 void load_shipped_spec(const std::string& name, const Library& library, Model& model,
                        Diagnostics& diagnostics);
-/// Reads the catalogue of requirements.
-void load_requirements(const std::string& file, Model& model, Diagnostics& diagnostics);
+/// Whose requirements a catalogue has: those of other protocols have fewer keys.
+enum class Catalogue : std::uint8_t { kRubicon, kOther };
+/// Reads a catalogue of requirements.
+void load_requirements(const std::string& file, Model& model, Diagnostics& diagnostics,
+                       Catalogue of = Catalogue::kRubicon);
 /// Reads a profile, or all of a folder; the requirements come first.
 void load_profile(const std::string& file, Model& model, Diagnostics& diagnostics);
 void load_profiles(const std::string& folder, Model& model, Diagnostics& diagnostics);
@@ -34,7 +37,7 @@ std::vector<std::string> case_files(const std::string& folder);
 void load_spec_text(const std::string& file, const std::string& text, Model& model,
                     Diagnostics& diagnostics);
 void load_requirements_text(const std::string& file, const std::string& text, Model& model,
-                            Diagnostics& diagnostics);
+                            Diagnostics& diagnostics, Catalogue of = Catalogue::kRubicon);
 void load_profile_text(const std::string& file, const std::string& text, Model& model,
                        Diagnostics& diagnostics);
 void load_case_text(const std::string& file, const std::string& text, Model& model,

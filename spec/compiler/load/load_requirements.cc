@@ -19,9 +19,10 @@ namespace rubricc {
 namespace {
 
 constexpr std::array<std::string_view, 11> kRequirementKeys{
-    "id",      "level",    "clause", "sentence", "source", "roles",
-    "forbids", "deployed", "shows",  "differs",  "content"};
-constexpr std::size_t kNeeded = 5;  // The first of them; the others may be absent.
+    "id",    "level",    "clause", "sentence", "source", "forbids",
+    "roles", "deployed", "shows",  "differs",  "content"};
+constexpr std::size_t kNeeded = 5;      // The first of them; the others may be absent.
+constexpr std::size_t kOfAnyOther = 6;  // The first of them; the others are for RUBICON's rules.
 constexpr std::array<std::string_view, 3> kRoles{"mote", "sink", "base_station"};
 
 bool is_requirement_id(std::string_view id) {
@@ -68,8 +69,10 @@ std::vector<std::string> read_texts(const YamlInput& input, const YamlMap& map,
   return out;
 }
 
-Requirement read_requirement(const YamlInput& input, const YAML::Node& node) {
-  const YamlMap map(input, node, "a requirement", kRequirementKeys);
+Requirement read_requirement(const YamlInput& input, const YAML::Node& node, Catalogue of) {
+  const std::span<const std::string_view> keys(kRequirementKeys);
+  const YamlMap map(input, node, "a requirement",
+                    of == Catalogue::kRubicon ? keys : keys.first(kOfAnyOther));
   Requirement out;
   out.place = input.place(node);
   if (!node.IsMap()) return out;
@@ -240,13 +243,14 @@ class CaseReader {
 
 }  // namespace
 
-void load_requirements(const std::string& file, Model& model, Diagnostics& diagnostics) {
+void load_requirements(const std::string& file, Model& model, Diagnostics& diagnostics,
+                       Catalogue of) {
   const auto text = text_of_file(file, diagnostics);
-  if (text) load_requirements_text(file, *text, model, diagnostics);
+  if (text) load_requirements_text(file, *text, model, diagnostics, of);
 }
 
 void load_requirements_text(const std::string& file, const std::string& text, Model& model,
-                            Diagnostics& diagnostics) {
+                            Diagnostics& diagnostics, Catalogue of) {
   diagnostics.add_source(file, text);
   const auto root = parse_yaml(file, text, diagnostics);
   if (!root) return;
@@ -255,7 +259,7 @@ void load_requirements_text(const std::string& file, const std::string& text, Mo
   // Id and line of each number; 0 is what means none.
   std::map<std::uint16_t, std::pair<std::string, int>> numbers{{0, {"no rule", 0}}};
   for (const YAML::Node& item : yaml_items(input, *root, "requirements")) {
-    Requirement found = read_requirement(input, item);
+    Requirement found = read_requirement(input, item, of);
     if (found.id.empty()) continue;
     const auto number = static_cast<std::uint16_t>(rubric::rule_number(found.id.c_str()));
     const auto [entry, fresh] = numbers.try_emplace(number, found.id, found.place.line);

@@ -9,7 +9,6 @@
 namespace rubricc {
 namespace {
 
-constexpr std::size_t kFileBytesMax = 1 << 20;
 constexpr int kNestingMax = 60;
 
 /// Refuses text that breaks yaml-cpp, which takes 0x04 for the end of the input and recurses as

@@ -140,6 +140,14 @@ TEST(BadSpecs, FilesAreNotLargerThanOneMebibyte) {
             "big.ksy: error: the file is too large; at most 1 MiB is read\n");
 }
 
+TEST(BadSpecs, AreRegularFiles) {
+  Model model;
+  Diagnostics diagnostics;
+  load_specs({"/dev/zero", "/"}, model, diagnostics);
+  EXPECT_EQ(diagnostics.print(),
+            "/: error: not a regular file\n/dev/zero: error: not a regular file\n");
+}
+
 TEST(BadSpecs, TypesNestNotTooDeep) {
   std::string text = "meta: {id: big}\ntypes:\n";
   for (int i = 0; i < 110; ++i) {

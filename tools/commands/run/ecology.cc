@@ -25,7 +25,8 @@ struct Mistake {
   std::string text;
 };
 
-int line_of(const YAML::Node& node) { return node.Mark().line + 1; }
+// An empty file has no place.
+int line_of(const YAML::Node& node) { return std::max(node.Mark().line, 0) + 1; }
 
 std::string text_of(const YAML::Node& node, const std::string& key) {
   if (!node.IsScalar()) throw Mistake{line_of(node), key + ": expected a text"};

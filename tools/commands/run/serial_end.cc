@@ -28,6 +28,12 @@ constexpr Milliseconds kLongestPause{4000};
 constexpr Milliseconds kOpenTime{1000};
 constexpr Milliseconds kSendTime{3000};
 
+// Returns the next program that connects; no descriptor where there is none.
+lines::Descriptor accepted(const lines::Descriptor& listener) {
+  return lines::Descriptor(
+      ::accept4(listener.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
+}
+
 }  // namespace
 
 SerialEnd::SerialEnd(const lines::Address& to) : name_(to.name), pause_(kFirstPause) {
@@ -59,24 +65,28 @@ SerialEnd::SerialEnd(const std::string& offered) : waits_for_others_(true), paus
     return;
   }
   const auto port = static_cast<std::uint16_t>(std::stoul(offered.substr(offered.find(':') + 1)));
-  auto listener = std::make_shared<lines::Descriptor>(lines::listen_at("127.0.0.1", port));
-  const std::uint16_t taken = lines::address_here(listener->get()).port();
+  listener_ = std::make_shared<lines::Descriptor>(lines::listen_at("127.0.0.1", port));
+  const std::uint16_t taken = lines::address_here(listener_->get()).port();
   name_ = fmt::format("sf-server:{}", taken);
   other_end_ = fmt::format("sf@127.0.0.1:{}", taken);
-  line_ = std::make_unique<lines::ForwarderLine>([listener](SteadyTime) {
-    const int fd = ::accept4(listener->get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
-    if (fd < 0) throw Broken("nobody has connected");
-    return ByteStream(lines::Descriptor(fd));
+  line_ = std::make_unique<lines::ForwarderLine>([listener = listener_](SteadyTime) {
+    lines::Descriptor other = accepted(*listener);
+    if (other.get() < 0) throw Broken("nobody has connected");
+    return ByteStream(std::move(other));
   });
 }
 
 bool SerialEnd::open() {
   const SteadyTime now = steady_clock::now();
-  if (open_ || now < next_try_) return false;
+  if (now < next_try_) return false;
+  if (open_) {
+    turn_another_away();
+    return false;
+  }
   try {
     line_->open(now + kOpenTime);
     open_ = true;
-    said_ = false;
+    said_ = turned_away_ = false;
     pause_ = kFirstPause;
     text::print(stderr, "rubric: {}: connected\n", name_);
   } catch (const Broken& broken) {
@@ -85,6 +95,15 @@ bool SerialEnd::open() {
     pause_ = std::min(2 * pause_, kLongestPause);
   }
   return open_;
+}
+
+// Without a word, a second program would wait for ever.
+void SerialEnd::turn_another_away() {
+  if (!listener_) return;
+  next_try_ = steady_clock::now() + kFirstPause;
+  if (accepted(*listener_).get() < 0 || std::exchange(turned_away_, true)) return;
+  text::print(stderr, "rubric: {}: another program was turned away: one at a time is served\n",
+              name_);
 }
 
 void SerialEnd::lost(const std::string& why) {

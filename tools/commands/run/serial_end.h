@@ -31,18 +31,23 @@ class SerialEnd {
   std::vector<std::uint8_t> receive(lines::SteadyTime deadline);
   /// Returns the descriptor on which packets come, for poll(); -1 while there is none.
   int fd() const { return open_ ? line_->fd() : -1; }
-  /// Returns when open() tries again; the end of time while the line is open.
-  lines::SteadyTime next_try() const { return open_ ? lines::SteadyTime::max() : next_try_; }
+  /// Returns when open() is to be called again; the end of time while nobody can be waiting.
+  lines::SteadyTime next_try() const {
+    return open_ && !listener_ ? lines::SteadyTime::max() : next_try_;
+  }
 
  private:
+  void turn_another_away();
   void lost(const std::string& why);
 
   std::string name_;
   std::string other_end_;
   bool waits_for_others_ = false;
+  std::shared_ptr<lines::Descriptor> listener_;  // Of a sink that is a serial forwarder.
   std::unique_ptr<lines::PacketLine> line_;
   bool open_ = false;
   bool said_ = false;
+  bool turned_away_ = false;  // And that was said.
   lines::SteadyTime next_try_{};
   lines::Milliseconds pause_;
 };

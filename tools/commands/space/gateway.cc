@@ -12,6 +12,7 @@
 #include "codec/text/text.h"
 #include "conformance/machine/messages.h"
 #include "tools/commands/run/json_application.h"
+#include "tools/commands/run/names.h"
 #include "tools/commands/run/wall_clock.h"
 
 namespace rubric::space {
@@ -108,11 +109,17 @@ void Gateway::joined(const machine::Received& message) {
   const auto id = static_cast<std::uint16_t>(view->mote_addr());
   if (id != message.src.devid || view->island_addr() != settings_.island) return;
   Member& member = members_[id];
+  const std::uint16_t before = member.mote.descriptor.transducers;
   member.mote.descriptor = {static_cast<std::uint8_t>(view->mote_type()), view->actuators().raw(),
                             view->transducers().raw()};
   member.mote.joined_ms = run::wall_ms();
   space_->put(mote_key(settings_.island, id), mote_data(member.mote), Space::Stay::kTuple);
   announce(id, member.mote);
+  if (settings_.home_assistant.empty()) return;
+  const auto lost = static_cast<std::uint16_t>(before & ~view->transducers().raw());
+  for (const std::string& sensor : run::transducer_names(lost)) {
+    space_->announce(sensor_topic(settings_.island, id, sensor), "");
+  }
 }
 
 void Gateway::announce(std::uint16_t id, const Mote& mote) {

@@ -375,6 +375,10 @@ string wish_event(const char* what, std::uint16_t mote, const string& id, const 
   return text_of(json);
 }
 
+string sensor_topic(std::uint16_t island, std::uint16_t id, const string& sensor) {
+  return fmt::format("homeassistant/sensor/rubicon_{}_{}/{}/config", island, id, sensor);
+}
+
 std::vector<Announcement> home_assistant(const string& root, std::uint16_t island, std::uint16_t id,
                                          const Mote& mote) {
   const auto availability = [&](const string& key) {
@@ -400,8 +404,7 @@ std::vector<Announcement> home_assistant(const string& root, std::uint16_t islan
     json["device"] = {{"identifiers", Json::array({device})},
                       {"name", fmt::format("mote {}:{}", island, id)},
                       {"model", run::mote_type_name(mote.descriptor.mote_type)}};
-    out.push_back(
-        {fmt::format("homeassistant/sensor/{}/{}/config", device, sensor), text_of(json)});
+    out.push_back({sensor_topic(island, id, sensor), text_of(json)});
   }
   return out;
 }

@@ -88,6 +88,8 @@ struct Announcement {
   std::string topic;
   std::string payload;
 };
+/// Returns the topic at which a sensor of a mote is described; nothing there: there is none.
+std::string sensor_topic(std::uint16_t island, std::uint16_t id, const std::string& sensor);
 /// Returns what makes a home's controller show each sensor of a mote. `root` is that of the topics.
 std::vector<Announcement> home_assistant(const std::string& root, std::uint16_t island,
                                          std::uint16_t id, const Mote& mote);
