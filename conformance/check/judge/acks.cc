@@ -91,6 +91,8 @@ void Acks::sent(std::uint16_t node, const Observation& seen, const Net& ack) {
   for (std::size_t i = 0; i < ring.size(); ++i) {
     Arrived& arrived = ring.newest(i);
     if (arrived.net.seq_num != acked || arrived.net.src != ack.dest) continue;
+    SerialJoined joined;  // It has the mote's address and the sink's number.
+    if (parse_serial_joined(arrived.net, joined)) continue;
     if (best == nullptr || rank(arrived) > rank(*best)) best = &arrived;
   }
   if (best == nullptr || rank(*best) < 3) {
@@ -218,6 +220,7 @@ void Acks::refuse(std::uint16_t node, const Observation& seen, const Net& ack, s
   } else {
     rule = "T2-ONCE"_rule;
     severity = context_.on_line(node, context_.without(best->sender, best->place.time_us, now));
+    if (context_.lossy_air) severity = Severity::kInconclusive;
     said.text = "A second ack of " + name_of(best->net) + ".";
     said.expected = "One ack for each time that it was received.";
   }

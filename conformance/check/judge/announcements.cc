@@ -135,7 +135,8 @@ void Announcements::refuse_report(SinkWatch& sink, PairWatch& watch, const Place
   std::int64_t since = context_.run.start_us;
   if (has_ack && watch.asked) since = std::min(watch.ack.time_us, watch.request.time_us);
   Severity severity = context_.without_mote(mote_am, since, at.time_us);
-  if (!has_ack && !context_.options.start_cold) severity = Severity::kInconclusive;
+  const bool may_have_come = !context_.options.start_cold || context_.lossy_air;
+  if (!has_ack && may_have_come) severity = Severity::kInconclusive;
   if (h.member) {
     rule = "J6-REPEAT"_rule;
     said.text = what + " of mote " + number(mote_am) + " again, without a new join.";
@@ -149,6 +150,7 @@ void Announcements::refuse_report(SinkWatch& sink, PairWatch& watch, const Place
     said.expected = "That ack_join is ignored.";
   } else if (watch.ignored_ack == "J6-SEQ"_rule || watch.ignored_ack == "J6-ISLAND"_rule) {
     rule = watch.ignored_ack;
+    severity = context_.on_line(sink.device, severity);  // Its island may have been set.
     said.text = what + " of mote " + number(mote_am) + ", whose only ack_join had " +
                 (rule == "J6-SEQ"_rule ? "a number that was not its request's."
                                        : "another island as its destination.");

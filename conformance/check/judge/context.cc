@@ -9,7 +9,7 @@
 namespace rubric::check {
 namespace {
 
-constexpr std::size_t kNumbersMin = 24;         // Of a line; a fifth of all frames shows by then.
+constexpr std::size_t kNumbersMin = 48;         // Of a line; a fifth of all frames shows by then.
 constexpr std::size_t kHoleShare = 50;          // Frames of the air for each hole among them.
 constexpr std::int64_t kHostWaitsUs = 900'000;  // Hosts wait 1 s for a confirmation.
 
@@ -66,17 +66,21 @@ bool is_of(ReqId requirement, std::string_view group) {
   return std::string_view(reflect::requirement(requirement).id).starts_with(group);
 }
 
-}  // namespace
-
-std::vector<bool> find_lossy_taps(const Run& run, const Identity& who, const Options& options) {
+// Returns whether the capture misses many frames of the air.
+bool misses_air(const Identity& who, const Options& options) {
   std::size_t holes = 0;
   std::uint64_t frames = 0;
   for (const Device& device : who.devices) {
     holes += device.holes.size();
     frames += device.frames;
   }
-  const bool lossy_air = !options.sniffer_complete && kHoleShare * holes >= frames;
-  return find_lossy_taps(run, lossy_air);
+  return !options.sniffer_complete && kHoleShare * holes >= frames;
+}
+
+}  // namespace
+
+std::vector<bool> find_lossy_taps(const Run& run, const Identity& who, const Options& options) {
+  return find_lossy_taps(run, misses_air(who, options));
 }
 
 void Context::look_up() {
@@ -120,6 +124,7 @@ void Context::look_up() {
     hears_radio = hears_radio || tap.link == machine::Link::kRadio;
   }
   lossy_taps = find_lossy_taps(run, who, options);
+  lossy_air = who.hears_radio && misses_air(who, options);
   untimed_taps = run.unordered_taps;
   untimed_taps.resize(run.taps.size());
   unordered = std::find(untimed_taps.begin(), untimed_taps.end(), true) != untimed_taps.end();

@@ -64,6 +64,7 @@ struct Context {
   std::vector<bool> down_taps;  ///< Taps with frames to a sink.
 
   std::vector<bool> lossy_taps;       ///< Serial lines of which the capture misses frames.
+  bool lossy_air = false;             ///< It misses many of the air; a link's repeat shows no gap.
   std::vector<std::int64_t> last_us;  ///< By device: when something of it was seen last.
 
   /// Fills in all of these. Called before anything else.

@@ -373,6 +373,7 @@ void MoteJoins::refuse_ack(std::uint16_t mote, const Observation& seen, const Ac
     said.text = "The same ack_join again, " + ms_text(now - h.accepted_us) + " after the reply.";
     said.expected =
         "Repeats within one join period (" + ms_text(context_.join_period_us()) + "), at most 20.";
+    severity = context_.without(mote, h.acked_us, now);  // It may have asked again in between.
   } else if (h.join.phase == Phase::kMember) {
     said.text =
         "ack_join has " + ack_text(ack) + ", to AM address " + number(seen.frame.dest) + ".";
@@ -409,6 +410,7 @@ void MoteJoins::refuse_ack(std::uint16_t mote, const Observation& seen, const Ac
     // An ack_join that fits its own request may answer a reply that was not captured.
     if (asked && ack.seq_num != h.join.seq_num) {  // Its own, asked anew.
       severity = context_.without(mote, h.last_request_us, now);
+      if (context_.lossy_air) severity = Severity::kInconclusive;  // A namesake's, elsewhere.
     }
     if (own) severity = context_.without(kNobody, h.first_request_us, now);
     if (!asked) severity = context_.without(mote, context_.device(mote).first_us, now);

@@ -364,7 +364,10 @@ void SinkJoins::judge_clock(SinkWatch& sink, const Observation& seen, const Repl
     const bool off = grown_ms < passed_ms - kOffMs || grown_ms > most_ms;
     const bool still = reply.time_ms == sink.clock_ms && passed_ms >= kOffMs;
     if (still && (off || grown_ms == 0)) {
-      context_.report("J3-TIME"_rule, Severity::kFail, seen.place, sink.device, std::move(said));
+      // A step of the recorder's clock looks the same where frames that would show it are missing.
+      context_.report("J3-TIME"_rule,
+                      context_.lossy_air ? Severity::kInconclusive : Severity::kFail, seen.place,
+                      sink.device, std::move(said));
     } else if (off) {
       context_.report("J3-DRIFT"_rule, Severity::kWeak, seen.place, sink.device, std::move(said));
     } else {
@@ -408,8 +411,10 @@ void SinkJoins::refuse_reply(SinkWatch& sink, PairWatch& watch, const Observatio
              (watch.request_listed || watch.answered_seq != reply.seq_num ||
               watch.request.time_us > watch.ack.time_us)) {
     rule = "J2-LISTED"_rule;
-    // A capture does not show that a sink lost its power, and with it its list.
-    severity = watch.ack.time_us < sink.behind_us ? Severity::kInconclusive : Severity::kFail;
+    // A capture does not show that a sink lost its power, and with it its list; and one that misses
+    // frames of its line not that its island was set.
+    severity = watch.ack.time_us < sink.behind_us ? Severity::kInconclusive
+                                                  : context_.on_line(sink.device, Severity::kFail);
     said.text = "join_reply to mote " + number(am) + ", which the sink has reported as a member.";
     said.expected = "No answer to a mote that is listed.";
   } else if (watch.asked && reply.seq_num != watch.request_seq) {

@@ -91,6 +91,15 @@ TEST(Legal, NoAlarmComesBack) {
       {"mixed", 6602, "steps_often"},                 // Two steps forth in one join.
       {"stated_slow", 294, "steps_often"},            // A step forth that looks like a silence.
       {"mixed", 16304, "steps_often"},                // The same, with packets that are missing.
+      {"seq_near_end", 71,
+       "drops"},  // An ack of a message that was dropped, with a report's number.
+      {"unconfirmed_requests_again", 59, "drops"},  // The request of a later ack_join was dropped.
+      {"link_ack_lost_same_dsn", 111, "drops"},     // An ack_join without a gap was dropped.
+      {"serial_ack_lost", 245, "drops"},        // A report was dropped from a line of 24 packets.
+      {"stated_slow", 189, "drops"},            // A link's repeat was dropped, without a gap.
+      {"island_change_forgets", 619, "drops"},  // SET_ISLAND_ID was dropped.
+      {"same_devid", 573, "drops"},             // The request of a namesake was dropped.
+      {"interleaved_joins", 858, "drops_and_steps"},  // A step between two replies.
       {"foreign_mote_to_sink", 46, "steps_forth"},    // A step before an ack to another island.
       {"mixed", 372, "drops"},           // A lossy line, shown by an ack without packet.
       {"mixed", 584, "steps_often"},     // A step after a damaged frame.
