@@ -39,7 +39,7 @@ std::size_t after_blanks(std::string_view text, std::size_t at) {
 // Returns whether a word is as 1700000000.123.
 bool is_seconds(std::string_view word) {
   const std::size_t point = word.find_first_not_of(kDigits);
-  return point != 0 && point + 1 < word.size() && word[point] == '.' &&
+  return point != word.npos && point != 0 && point + 1 < word.size() && word[point] == '.' &&
          word.find_first_not_of(kDigits, point + 1) == word.npos;
 }
 
