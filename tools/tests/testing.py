@@ -20,6 +20,11 @@ def run(*words, env=None, **how):
     return subprocess.run([RUBRIC, *map(str, words)], env={**os.environ, **(env or {})}, **how)
 
 
+def sanitized():
+    """Whether the program was built with sanitizers, which map terabytes without using them."""
+    return b"__ubsan_handle" in pathlib.Path(RUBRIC).read_bytes()
+
+
 def rubric(*words, stdin="", **how):
     """Exit code, stdout and stderr as text."""
     data = stdin if isinstance(stdin, bytes) else stdin.encode()
