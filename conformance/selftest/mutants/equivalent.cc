@@ -30,7 +30,6 @@ constexpr std::array kSurvivors{
     Survivor{"plus one: J6-REPORT * by serial: nbytes", kSerialNbytes},
     Survivor{"plus one: N6-OWN * by serial: nbytes", kSerialNbytes},
     Survivor{"plus one: N6-* rubicon_ack by serial: nbytes", kSerialNbytes},
-    Survivor{"plus one: T2-ACK * by serial: nbytes", kSerialNbytes},
     Survivor{"* J6-REPORT net_msg serial_joined by serial: seq_num", kFreeNumber},
     Survivor{"* synaptic_data by radio: seq_num", kFreeNumber},
     Survivor{"* synaptic_data by serial: seq_num", kFreeNumber},
@@ -52,15 +51,10 @@ constexpr std::array kSurvivors{
              "It keeps what comes for a stopped channel, but signals nothing: that is free."},
     Survivor{"double: send J4-ACK ack_join", kRepeats},
     Survivor{"drop: send J4-REPEAT ack_join", kRepeats},
-    Survivor{"delay: tell J8-FAIL joined",
-             "It comes too late for a call of five requests, but a trace has no conditions: it "
-             "cannot say that the fifth request, which a call of four lacks, was the last.",
-             kNotJudged},
     Survivor{"* N6-OWN net_msg by serial: payload.payload",
              "Stale bytes may follow on the serial line, so that cases compare bodies that can be "
              "told from them, those of demo messages.",
              kNotJudged},
-    Survivor{"plus one: N8-INCOMING net_msg rubicon_ack by serial: nbytes", kSerialNbytes},
     Survivor{"* tell J11-SEND send_result: seq_num",
              "A mote may keep what is sent before it joins, and tell its number (decision 118). No "
              "trace compares the number with what it then sends.",
