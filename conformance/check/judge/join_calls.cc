@@ -283,9 +283,16 @@ void JoinCalls::judge_member(std::uint16_t mote, const MoteHypothesis& h, std::i
        {}});
 }
 
-// Returns when the timer of a call that may send all its requests expires for the last time.
+// Returns when the timer of a call that may send all its requests expires for the last time. A
+// request may be late by the response time, and makes all after it late.
 std::int64_t JoinCalls::last_expiry_us(const MoteHypothesis& h) const {
-  return h.first_request_us + context_.profile().join_requests_max * context_.join_period_us();
+  const std::int64_t period_us = context_.join_period_us();
+  const std::int64_t requests = context_.profile().join_requests_max;
+  const std::int64_t left = std::max<std::int64_t>(0, requests - h.join.requests);
+  const std::int64_t latest_us =
+      h.first_request_us + requests * (period_us + context_.response_us());
+  return std::max(h.first_request_us + requests * period_us,
+                  std::min(latest_us, h.last_request_us + (left + 1) * period_us));
 }
 
 // Judges a call that by a whole log ran out without an event before the next one.
@@ -316,7 +323,8 @@ void JoinCalls::finish(std::int64_t end_us) {
     const MoteHypothesis& h = set[0];
     if (h.join.phase == Phase::kMember) judge_member(mote, h, end_us);
     if (h.join.phase != Phase::kJoining) continue;
-    if (end_us <= last_expiry_us(h) + context_.response_us()) continue;
+    const std::int64_t calls_us = context_.profile().join_requests_max * context_.join_period_us();
+    if (end_us <= h.first_request_us + calls_us + context_.response_us()) continue;
     if (h.first_request_us < 0) continue;                         // The begin is unknown.
     if (calls_[mote].logged && calls_[mote].open == 0) continue;  // It had its event.
     Place at;

@@ -148,13 +148,14 @@ void PeisWatch::refuse(std::uint16_t base, const Observation& seen, const Net& n
 void PeisWatch::overdue(std::uint16_t base, Messages& messages, bool up, std::int64_t now_us,
                         bool end) {
   if (!context_.run.has_time) return;
-  const std::int64_t wait = context_.response_us() + (end && !up ? kConfirmationUs : 0);
+  const std::int64_t confirmed_us = end && !up ? kConfirmationUs : 0;
+  const Link line = up ? Link::kPeis : Link::kSerial;
   std::size_t waiting = 0;
   for (std::size_t i = 0; i < messages.size(); ++i) waiting += messages.oldest(i).owed ? 1 : 0;
   for (std::size_t i = 0; i < messages.size(); ++i) {
     Message& message = messages.oldest(i);
     const std::int64_t since_us = std::max(message.place.time_us, message.given_us);
-    if (!message.owed || now_us - since_us <= wait) continue;
+    if (!message.owed || now_us <= context_.due_us(base, since_us, line) + confirmed_us) continue;
     message.owed = false;
     context_.report(up ? "N8-PEIS"_rule : "N8-INCOMING"_rule,
                     waiting > kPeisCrowd ? Severity::kInconclusive : Severity::kFail, message.place,

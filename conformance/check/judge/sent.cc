@@ -121,8 +121,15 @@ void Originals::ends(std::uint16_t node, std::int64_t end_us, const InterfaceWat
 
 void Originals::told(std::uint16_t node, const Observation& seen,
                      const machine::SendResult& result) {
-  if (calls_[node].size() == 0) return;
-  Call& call = calls_[node].newest(0);
+  auto& calls = calls_[node];
+  if (calls.size() == 0) return;
+  std::size_t which = 0;  // The oldest that still waits: results come in the order of the calls.
+  for (std::size_t i = 0; i < calls.size(); ++i) {
+    const Call& one = calls.newest(i);
+    const bool waits = seen.place.time_us - one.place.time_us <= context_.response_us();
+    if (!one.result && waits) which = i;
+  }
+  Call& call = calls.newest(which);
   if (call.result && context_.device(node).whole) {
     context_.report("N1-SEQ"_rule, Severity::kFail, seen.place, node,
                     {"send returns " + number(result.seq_num) + " after " + number(*call.result) +
@@ -309,7 +316,8 @@ Originals::Asked Originals::judge_wrap(std::uint16_t node, const Observation& se
     const std::int64_t called_us = same->place.time_us;
     if (same->result == net.seq_num) {
       judge_order(node, seen, *same);
-      context_.left(node, link, seen.place, called_us, called_us, name_of(net));
+      context_.left(node, link, seen.place, called_us, called_us + context_.response_us(),
+                    name_of(net));
     }
     if (same->result && !calls.full()) judge_result(node, seen, *same);
     return again ? Asked::kUnknown : Asked::kYes;
@@ -357,6 +365,7 @@ void Originals::sent(std::uint16_t node, const Observation& seen, const Net& net
     const Call& call = calls_[node].newest(i);
     if (call.left != net.seq_num) continue;
     sent.called_us = call.place.time_us;
+    if (call.failed) sent.told = 1;
     break;
   }
   if (sent_[node].full()) close(node, sent_[node].size() - 1, seen.place.time_us);

@@ -77,6 +77,7 @@ class Originals {
     bool self = false;                           ///< It is for the node itself.
     bool full = false;                           ///< send refused it, as the buffer was full.
     std::int64_t left_us = -1;                   ///< When it left.
+    bool failed = false;                         ///< Its timeout was told before it left.
   };
 
   /// Judges the end of a message that is forgotten now: was its application notified?

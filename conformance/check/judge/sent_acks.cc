@@ -52,6 +52,12 @@ void Originals::told(std::uint16_t node, const Observation& seen, const machine:
   }
   const std::string what = "receive_ack(" + std::string(ack.success ? "success" : "failure") +
                            ", number " + number(ack.seq_num) + ")";
+  for (std::size_t i = 0; match == nullptr && !ack.success && i < calls_[node].size(); ++i) {
+    Call& call = calls_[node].newest(i);  // The timeout may run from the call (decision 110).
+    if (call.result != ack.seq_num || call.left || call.failed || !call.send->reliable) continue;
+    call.failed = true;
+    return;
+  }
   if (match == nullptr) {
     // Messages from a base station to other islands pass where no log and no tap is read, and of
     // many sent at once the first are forgotten here before their timeout.
