@@ -167,8 +167,9 @@ InputFormat detect(Bytes first_bytes) {
   if (sample.size() >= 2 && sample[0] == kSfMagic && sample[1] == kSfVersion) {
     return InputFormat::kSf;
   }
-  if (is_json(sample.from(mark_size(sample)))) return InputFormat::kJsonl;
-  const InputFormat text = text_format(sample.from(mark_size(sample)));
+  const Bytes written = sample.from(mark_size(sample));
+  if (is_json(written)) return InputFormat::kJsonl;
+  const InputFormat text = text_format(written);
   if (text != InputFormat::kUnknown) return text;
   if (is_hdlc(sample)) return InputFormat::kHdlc;
   return InputFormat::kUnknown;

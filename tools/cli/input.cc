@@ -260,8 +260,7 @@ class Run {
   static std::string_view unknown_format(Bytes beginning) {
     if (beginning.size() > 1 && beginning[0] + beginning[1] == 0xFF + 0xFE) {
       return "this is UTF-16 text, as PowerShell writes; 'iconv -f UTF-16 -t UTF-8 FILE' makes "
-             "UTF-8 "
-             "of it";
+             "UTF-8 of it";
     }
     if (is_hex_dump(beginning)) {
       return "this is a hex dump with offsets; 'text2pcap -l 195 FILE FILE.pcap' makes a capture "

@@ -256,7 +256,8 @@ void Acks::delivered(std::uint16_t node, const Observation& seen,
     if (best == nullptr || rank(arrived) > rank(*best) || older) best = &arrived;
   }
   if (best == nullptr) {
-    for (std::size_t i = 0; i < ring.size(); ++i) {  // What it was made of is not missing as well.
+    // The message that the delivery was made from is not reported as missing, too.
+    for (std::size_t i = 0; i < ring.size(); ++i) {
       Arrived& arrived = ring.oldest(i);
       if (arrived.net.src != received.src || arrived.net.app_id != received.app_id) continue;
       if (arrived.delivers == ReqId::kNone || arrived.delivered > 0) continue;

@@ -1,5 +1,5 @@
-// judge(), as observation.h declares it. A run whose files are in order only as far as their common
-// frames tell, or a recorder's clock of which stepped, is judged in more than one way.
+// judge(), as observation.h declares it. It judges a run in more than one way where only common
+// frames tell the order of its files, or where the clock of a recorder stepped.
 #include <algorithm>
 #include <limits>
 #include <map>
@@ -155,8 +155,8 @@ Run with_late_steps(const Run& run) {
   return out;
 }
 
-// Judges `run`, a recorder's clock of which stepped, as if the frames after each step had come at
-// once, and as if they had come much later. What only one of the two has is inconclusive.
+// Judges a run in which the clock of a recorder stepped, as if the frames after each step had come
+// at once, and as if they had come much later. What only one of the two has is inconclusive.
 Report judge_each_gap(const Run& run, const Options& options) {
   Report report = Judge(run, options).judge();
   Report late = Judge(with_late_steps(run), options).judge();

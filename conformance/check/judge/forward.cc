@@ -243,7 +243,7 @@ void Forwarding::expire_early(Line& line, std::int64_t now_us) {
 }
 
 void Forwarding::unheard(Line& line, const Passing& early) {
-  Passing* meant = nullptr;  // What came and waits, and this may have been made of.
+  Passing* meant = nullptr;  // It came and waits; this one may have been made from it.
   for (std::size_t i = 0; i < line.up.size() && meant == nullptr; ++i) {
     Passing& passing = line.up.oldest(i);
     const bool alike =

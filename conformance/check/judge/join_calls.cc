@@ -230,7 +230,8 @@ void JoinCalls::told(std::uint16_t mote, const Observation& seen, const machine:
   context_.report("J8-FAIL"_rule, Severity::kFail, seen.place, mote, std::move(said));
 }
 
-// Says whether by a whole log a success is told later than a golden trace has it, by each of `set`.
+// Returns whether, by a whole log, a success is told later than in a golden trace, whichever state
+// of `set` the mote was in; and reports it.
 bool JoinCalls::judge_late(std::uint16_t mote, const Observation& seen,
                            const std::vector<MoteHypothesis>& set) {
   if (!context_.device(mote).whole || !context_.run.has_time || set.empty()) return false;

@@ -38,18 +38,24 @@ check::Run stepped_at(Script script, double ms, double by_ms, std::size_t count 
   return script.run;
 }
 
-// Two motes join, at 0 and 1000 ms; the first one sends a message each 400 ms.
-Script busy() {
-  Script script;
-  script.join(0, 11, 2, 100);
-  for (int i = 1; i < 20; ++i) {
+// Mote 2 sends a message each 400 ms, with the numbers `first` to `last`.
+void send(Script& script, int first, int last) {
+  for (int i = first; i <= last; ++i) {
     NetFields up;
     up.dest = {11, machine::kNullDevid};
     up.src = {11, 2};
     up.seq_num = static_cast<std::uint16_t>(i);
-    if (i == 3) script.join(1000, 11, 3, 200);
     script.net(400 * i, 2, 1, up).up(400 * i + 15, up.forwarded());
   }
+}
+
+// Two motes join, at 0 and 1000 ms; the first one sends messages.
+Script busy() {
+  Script script;
+  script.join(0, 11, 2, 100);
+  send(script, 1, 2);
+  script.join(1000, 11, 3, 200);
+  send(script, 3, 19);
   return script;
 }
 
@@ -114,14 +120,9 @@ TEST(Steps, ALinkAckThatComesMuchLaterShowsOneForth) {
 TEST(Steps, ALateAckJoinBetweenOrdinarySilencesShowsNone) {
   Script script;
   script.join(0, 11, 2, 100).join(100, 11, 3, 200);
-  for (int i = 1; i < 20; ++i) {
-    NetFields up;
-    up.dest = {11, machine::kNullDevid};
-    up.src = {11, 2};
-    up.seq_num = static_cast<std::uint16_t>(i);
-    if (i == 4) script.ack_join(1590, 11, 3, 200);
-    script.net(400 * i, 2, 1, up).up(400 * i + 15, up.forwarded());
-  }
+  send(script, 1, 3);
+  script.ack_join(1590, 11, 3, 200);
+  send(script, 4, 19);
   const check::Run run = stepped_at(script, 0, 0);
   EXPECT_TRUE(run.steps.empty());
   ASSERT_EQ(failures_of(judge(run, strict())).size(), 1U);
