@@ -435,9 +435,10 @@ constexpr reflect::Requirement kRequirements[] = {
      "release 1.0 NetworkP",
      reflect::kRoleSink | reflect::kRoleBaseStation, false, ""},
     {"N9-OTHER", "MUST", "network, island id",
-     "A config message of another type, or with a reserved island id, changes nothing.",
+     "A config message of another type, or with a reserved island id, changes nothing, and "
+     "a base station sets no such id.",
      "release 1.0 NetworkP; decision 132",
-     reflect::kRoleSink, true, ""},
+     reflect::kRoleSink | reflect::kRoleBaseStation, true, ""},
     {"N9-MEMBERS", "SHOULD", "network, island id",
      "A sink whose island id changes forgets its members.",
      "decision 123",

@@ -74,7 +74,8 @@ void hear_ack_join(Node& node, const Frame& frame) {
 void hear_config(Node& node, const Frame& frame) {
   const auto config = rubicon::ConfigView::parse(frame.payload);
   if (!config) return node.actions.ignored(config.error().requirement);
-  //= N9-OTHER: A config message of another type, or with a reserved island id, changes nothing.
+  //= N9-OTHER: A config message of another type, or with a reserved island id, changes nothing, and
+  //= a base station sets no such id.
   if (config->type() != rubicon::CommandCode::kSetIslandId || is_reserved(config->value())) {
     return node.actions.ignored("N9-OTHER"_rule);
   }

@@ -192,7 +192,8 @@ inline void Node::report_members() {
 
 inline void Node::hear_config(Bytes payload) {
   const auto config = rubicon::ConfigView::parse(payload);
-  //= N9-OTHER: A config message of another type, or with a reserved island id, changes nothing.
+  //= N9-OTHER: A config message of another type, or with a reserved island id, changes nothing, and
+  //= a base station sets no such id.
   if (!config || config->type() != rubicon::CommandCode::kSetIslandId) return;
   if (is_reserved(config->value()) || config->value() == island_) return;
   //= N9-SET: A config message SET_ISLAND_ID over serial sets the sink's island id, and a base

@@ -312,8 +312,9 @@ class Identifier {
       if (run_.taps[tap].link != machine::Link::kSerial) continue;
       SerialLine line = lines_.at(tap);
       const auto host = logged_host_.find(tap);
-      if (line.island == 0 && host != logged_host_.end()) {
-        line.island = line.first = run_.nodes[host->second].island;
+      if (host != logged_host_.end() && run_.nodes[host->second].island != 0) {
+        line.first = run_.nodes[host->second].island;  // Whatever it sets later.
+        if (line.island == 0) line.island = line.first;
       }
       const auto owner = logged_sink_.find(tap);
       if (line.island == 0 && owner == logged_sink_.end()) continue;

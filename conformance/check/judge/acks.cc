@@ -117,7 +117,9 @@ void Acks::sent(std::uint16_t node, const Observation& seen, const Net& ack) {
                      {}});
     return;
   }
-  if (took > context_.ack_timeout_us()) {
+  // What stopped it, a busy line or application or a radio that was off, is no fault of the node.
+  if (took > context_.ack_timeout_us() && best->must_ack &&
+      now > context_.due_us(node, best->whole_us)) {
     context_.report("T2-PROMPT"_rule, Severity::kWeak, seen.place, node,
                     {"The ack of " + name_of(best->net) + " comes after " + ms_text(took) + ".",
                      "Before the sender's timeout, " + ms_text(context_.ack_timeout_us()) + ".",

@@ -80,15 +80,18 @@ void JoinCalls::called(std::uint16_t mote, const Observation& seen,
         return h.unknown || h.join.phase != Phase::kOutside;
       });
   calls.waits = calls.open > 0;
+  if (calls.open == 0) calls.off_us = 0;
   ++calls.open;
   calls.last = call;
   calls.called = seen.place;
-  calls.asks = context_.device(mote).whole && !calls.refusable && !calls.radio_off;
+  calls.asks = context_.device(mote).whole && !calls.refusable && calls.off_since_us < 0;
 }
 
-void JoinCalls::radio_set(std::uint16_t mote, bool on) {
-  calls_[mote].radio_off = !on;
-  calls_[mote].asks = false;
+void JoinCalls::radio_set(std::uint16_t mote, bool on, std::int64_t now_us) {
+  Calls& calls = calls_[mote];
+  if (calls.off_since_us >= 0) calls.off_us += now_us - calls.off_since_us;
+  calls.off_since_us = on ? -1 : now_us;
+  calls.asks = false;
 }
 
 void JoinCalls::ends(std::uint16_t mote, std::int64_t end_us) {
@@ -198,7 +201,7 @@ void JoinCalls::told(std::uint16_t mote, const Observation& seen, const machine:
   if (refused || std::any_of(before.begin(), before.end(), fits)) {
     const auto late = [&](const MoteHypothesis& h) {
       return !h.unknown && h.join.phase == Phase::kJoining &&
-             now > context_.due_us(mote, last_expiry_us(h));
+             now > context_.due_us(mote, last_expiry_us(mote, h));
     };
     if (!refused && context_.run.all_stated && std::ranges::all_of(before, late)) {
       context_.report("J8-FAIL"_rule, Severity::kFail, seen.place, mote,
@@ -267,7 +270,7 @@ void JoinCalls::judge_member(std::uint16_t mote, const MoteHypothesis& h, std::i
   // In a whole log it has the time of a golden trace.
   const bool whole = context_.device(mote).whole;
   const std::int64_t joined_us = std::max(h.accepted_us, h.acked_us) + context_.response_us();
-  const std::int64_t over_us = whole ? joined_us : std::max(last_expiry_us(h), h.acked_us);
+  const std::int64_t over_us = whole ? joined_us : std::max(last_expiry_us(mote, h), h.acked_us);
   const std::int64_t from = again ? calls.called.time_us : over_us;
   if (end_us <= context_.due_us(mote, from)) return;
   context_.report(
@@ -285,15 +288,24 @@ void JoinCalls::judge_member(std::uint16_t mote, const MoteHypothesis& h, std::i
 }
 
 // Returns when the timer of a call that may send all its requests expires for the last time. A
-// request may be late by the response time, and makes all after it late.
-std::int64_t JoinCalls::last_expiry_us(const MoteHypothesis& h) const {
+// request may be late by the response time, and makes all after it late; so do a busy channel and a
+// radio that is off.
+std::int64_t JoinCalls::last_expiry_us(std::uint16_t mote, const MoteHypothesis& h) const {
   const std::int64_t period_us = context_.join_period_us();
   const std::int64_t requests = context_.profile().join_requests_max;
   const std::int64_t left = std::max<std::int64_t>(0, requests - h.join.requests);
   const std::int64_t latest_us =
       h.first_request_us + requests * (period_us + context_.response_us());
-  return std::max(h.first_request_us + requests * period_us,
-                  std::min(latest_us, h.last_request_us + (left + 1) * period_us));
+  std::int64_t over_us = std::max(h.first_request_us + requests * period_us,
+                                  std::min(latest_us, h.last_request_us + (left + 1) * period_us)) +
+                         calls_[mote].off_us;
+  for (const BusyTime& busy : context_.busy_times(mote)) {
+    const std::int64_t from_us = std::max(busy.from_us, h.first_request_us);
+    if (busy.line == machine::Link::kSerial || busy.to_us <= from_us || from_us > over_us) continue;
+    if (busy.to_us == INT64_MAX) return INT64_MAX / 2;
+    over_us += busy.to_us - from_us + 2 * context_.response_us();
+  }
+  return over_us;
 }
 
 // Judges a call that by a whole log ran out without an event before the next one.
@@ -303,7 +315,7 @@ void JoinCalls::judge_over(std::uint16_t mote, std::int64_t now_us) {
   if (!context_.device(mote).whole || calls.open == 0 || set.empty()) return;
   const auto over = [&](const MoteHypothesis& h) {
     return !h.unknown && h.join.phase == Phase::kJoining &&
-           now_us > context_.due_us(mote, last_expiry_us(h));
+           now_us > context_.due_us(mote, last_expiry_us(mote, h));
   };
   if (!std::ranges::all_of(set, over)) return;
   calls.open = 0;

@@ -22,7 +22,7 @@ class JoinCalls {
   bool request(std::uint16_t mote, const Observation& seen, const Request& request);
   void called(std::uint16_t mote, const Observation& seen, const machine::JoinIsland& call);
   void told(std::uint16_t mote, const Observation& seen, const machine::Joined& joined);
-  void radio_set(std::uint16_t mote, bool on);
+  void radio_set(std::uint16_t mote, bool on, std::int64_t now_us);
   void finish(std::int64_t end_us);
 
  private:
@@ -34,7 +34,8 @@ class JoinCalls {
     Place called;
     bool waits = false;                   ///< It came while another one ran.
     bool asks = false;                    ///< It owes a join_request.
-    bool radio_off = false;               ///< By its application.
+    std::int64_t off_since_us = -1;       ///< Its application switched the radio off; -1: it is on.
+    std::int64_t off_us = 0;              ///< How long it was off in the open call.
     std::optional<std::uint16_t> number;  ///< Of the last request.
     bool fresh = false;                   ///< The last call, of a mote with none open, sent none.
   };
@@ -45,7 +46,7 @@ class JoinCalls {
   void judge_silent(std::uint16_t mote, std::int64_t end_us);
   bool judge_late(std::uint16_t mote, const Observation& seen,
                   const std::vector<MoteHypothesis>& set);
-  std::int64_t last_expiry_us(const MoteHypothesis& h) const;
+  std::int64_t last_expiry_us(std::uint16_t mote, const MoteHypothesis& h) const;
 
   Context& context_;
   MoteJoins& motes_;

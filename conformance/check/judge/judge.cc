@@ -247,7 +247,7 @@ void Judge::called(const Observation& seen, std::uint16_t device) {
       forwarding_.radio_set(device, set->on);
       synaptic_.able(device, set->on, seen.place.time_us);
       joins_.radio_set(device, set->on, seen.place.time_us);
-      join_calls_.radio_set(device, set->on);
+      join_calls_.radio_set(device, set->on, seen.place.time_us);
     }
     return;
   }
@@ -296,8 +296,12 @@ void Judge::told(const Observation& seen, std::uint16_t device) {
   } else if (const auto* done = std::get_if<machine::OperationResult>(seen.notice)) {
     const auto asked = asked_island_.find(device);
     if (asked == asked_island_.end()) return;
-    if (done->success && who_.devices[device].whole) own_island_[device] = asked->second;
-    if (!done->success) peis_.refused_island(device);
+    if (done->success && machine::is_reserved(asked->second)) {
+      if (is(device, Role::kBaseStation)) peis_.sets_reserved(device, seen, asked->second);
+    } else if (done->success && who_.devices[device].whole) {
+      own_island_[device] = asked->second;
+    }
+    if (!done->success) peis_.refused_island(device, asked->second);
     asked_island_.erase(asked);
   } else if (const auto* result = std::get_if<machine::SendResult>(seen.notice)) {
     originals_.told(device, seen, *result);

@@ -45,14 +45,18 @@ void Judge::hears(std::uint16_t node, const machine::Router& router, machine::Li
                   const Observation& seen, std::uint16_t sender, const Net& net, bool sure) {
   if (router.own.pid == 0) return;  // A sink of which no island is known.
   const machine::Route route = machine::route_received(router, from, net.dest, net.src);
-  if (!route.deliver && route.onward != machine::Route::Onward::kNowhere) return;
   // A message to every island may be taken or ignored (decision 114).
   const bool free = route.deliver || net.dest.pid == machine::kBroadcastPid;
   const bool off = interfaces_.off(node, from, seen.place.time_us);
   const Standing standing = this->standing(node);
   ReqId forbidden = free ? ReqId::kNone : route.requirement;
-  // What a sink hands up is for the base station, or for another island.
-  if (!free && is(node, Role::kBaseStation)) forbidden = "N8-DELIVER"_rule;
+  // What is to be passed on is for somebody else, and what a sink hands up for the base station.
+  const bool onward = route.onward != machine::Route::Onward::kNowhere;
+  const bool base = is(node, Role::kBaseStation);
+  if (!free && base) forbidden = "N8-DELIVER"_rule;
+  if (!free && onward && !base) {
+    forbidden = from == machine::Link::kRadio ? "N6-DELIVER"_rule : "N7-DELIVER"_rule;
+  }
   if (standing == Standing::kOutside) forbidden = "J11-HEAR"_rule;
   if (off) forbidden = "N10-OFF"_rule;
   // So may one straight from a foreign mote (decision 116), and one for another island that a base

@@ -169,33 +169,50 @@ void PeisWatch::overdue(std::uint16_t base, Messages& messages, bool up, std::in
 }
 
 void PeisWatch::asked_island(std::uint16_t base, const Observation& call, std::uint16_t island) {
-  bases_[base].asked = call.place;
-  bases_[base].island = island;
+  bases_[base].asked.push_back({call.place, island});
+}
+
+void PeisWatch::refused_island(std::uint16_t base, std::uint16_t island) {
+  std::vector<Asked>& asked = bases_[base].asked;
+  if (!asked.empty() && asked.back().island == island) asked.pop_back();
 }
 
 void PeisWatch::told_island(std::uint16_t base, const Observation& seen, std::int32_t island) {
-  Base& watch = bases_[base];
-  if (!watch.asked) return;
-  watch.asked.reset();
-  if (island == watch.island) return context_.findings.kept("N9-SET"_rule);
-  context_.report("N9-SET"_rule, Severity::kFail, seen.place, base,
-                  {"After the call that sets island " + number(watch.island) +
-                       " the config message to the sink sets " +
-                       (island < 0 ? "none." : number(static_cast<std::uint64_t>(island)) + "."),
-                   "SET_ISLAND_ID with the island of the call.",
+  const auto config = rubicon::ConfigView::parse(seen.frame.payload);
+  if (config && config->type() == rubicon::CommandCode::kSetIslandId && island < 0) {
+    return sets_reserved(base, seen, config->value());
+  }
+  std::vector<Asked>& asked = bases_[base].asked;
+  if (asked.empty()) return;
+  const std::uint16_t due = asked.front().island;
+  asked.erase(asked.begin());
+  if (island == due) return context_.findings.kept("N9-SET"_rule);
+  context_.report(
+      "N9-SET"_rule, Severity::kFail, seen.place, base,
+      {"After the call that sets island " + number(due) + " the config message to the sink sets " +
+           (island < 0 ? "none." : number(static_cast<std::uint64_t>(island)) + "."),
+       "SET_ISLAND_ID with the island of the call.",
+       {}});
+}
+
+void PeisWatch::sets_reserved(std::uint16_t base, const Observation& seen, std::uint16_t island) {
+  context_.report("N9-OTHER"_rule, Severity::kFail, seen.place, base,
+                  {"The base station sets island " + number(island) + ", which is reserved.",
+                   "It refuses the call, and its sink is told nothing.",
                    {}});
 }
 
 void PeisWatch::overdue_island(std::uint16_t base, std::int64_t now_us) {
-  Base& watch = bases_[base];
-  if (!watch.asked || !context_.run.has_time) return;
-  if (now_us <= context_.due_us(base, watch.asked->time_us, Link::kSerial)) return;
-  context_.report("N9-SET"_rule, Severity::kFail, *watch.asked, base,
-                  {"The application sets island " + number(watch.island) +
+  std::vector<Asked>& asked = bases_[base].asked;
+  if (asked.empty() || !context_.run.has_time) return;
+  const Asked& first = asked.front();
+  if (now_us <= context_.due_us(base, first.place.time_us, Link::kSerial)) return;
+  context_.report("N9-SET"_rule, Severity::kFail, first.place, base,
+                  {"The application sets island " + number(first.island) +
                        ", and the sink is not told within " + ms_text(context_.response_us()) + ".",
                    "A config message SET_ISLAND_ID to the sink.",
                    {}});
-  watch.asked.reset();
+  asked.erase(asked.begin());
 }
 
 void PeisWatch::overdue(std::uint16_t base, std::int64_t now_us) {

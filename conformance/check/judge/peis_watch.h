@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "conformance/check/judge/context.h"
@@ -42,8 +41,10 @@ class PeisWatch {
   void went_down(std::uint16_t base, const Observation& seen, const Net& net);
   /// Notes a call that sets the island, which `base` must tell its sink.
   void asked_island(std::uint16_t base, const Observation& call, std::uint16_t island);
-  /// Notes that the call failed.
-  void refused_island(std::uint16_t base) { bases_[base].asked.reset(); }
+  /// Notes that the last call, which set `island`, failed.
+  void refused_island(std::uint16_t base, std::uint16_t island);
+  /// Reports that `base` takes a reserved island, by its answer to the call or its config message.
+  void sets_reserved(std::uint16_t base, const Observation& seen, std::uint16_t island);
   /// Judges a config message of `base` that sets `island`; -1 if it sets none.
   void told_island(std::uint16_t base, const Observation& seen, std::int32_t island);
   /// Judges what the base station owes, by a log that has all that it does until then.
@@ -61,12 +62,15 @@ class PeisWatch {
     std::int64_t given_us = -1;  ///< When the base station had it, by its log.
   };
   using Messages = Ring<Message, kRoom>;
-  struct Base {
-    Messages up;                 ///< From the sink.
-    Messages down;               ///< From PEIS.
-    bool moved = false;          ///< Its application set another island.
-    std::optional<Place> asked;  ///< A call that set `island`, which the sink was not told yet.
+  struct Asked {  ///< A call that sets the island.
+    Place place;
     std::uint16_t island = 0;
+  };
+  struct Base {
+    Messages up;               ///< From the sink.
+    Messages down;             ///< From PEIS.
+    bool moved = false;        ///< Its application set another island.
+    std::vector<Asked> asked;  ///< Calls of which the sink was not told yet, the oldest first.
   };
 
   static Message* match(Messages& messages, const Net& net);

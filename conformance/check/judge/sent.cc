@@ -12,6 +12,7 @@ using machine::Route;
 using rubicon::Component;
 
 constexpr std::int64_t kAtOnceUs = 50'000;
+constexpr std::int64_t kCallUs = 50'000;  // What send accepted is in its buffer then.
 constexpr std::size_t kBufferOut = 4;  // Messages; release 1.0's radio.
 constexpr std::size_t kFloatBytes = rubicon::SynapticDataLayout::ValuesAt::kUnitBytes;
 
@@ -139,6 +140,7 @@ void Originals::told(std::uint16_t node, const Observation& seen,
     return;
   }
   call.result = result.seq_num;
+  call.told_us = seen.place.time_us;
   const std::size_t waiting = this->waiting(node);
   call.full = result.seq_num == machine::kNoSeq && waiting >= kBufferOut;
   if (result.seq_num == machine::kNoSeq) judge_refused(node, seen, call, waiting);
@@ -316,8 +318,7 @@ Originals::Asked Originals::judge_wrap(std::uint16_t node, const Observation& se
     const std::int64_t called_us = same->place.time_us;
     if (same->result == net.seq_num) {
       judge_order(node, seen, *same);
-      context_.left(node, link, seen.place, called_us, called_us + context_.response_us(),
-                    name_of(net));
+      context_.left(node, link, seen.place, called_us, same->told_us + kCallUs, name_of(net));
     }
     if (same->result && !calls.full()) judge_result(node, seen, *same);
     return again ? Asked::kUnknown : Asked::kYes;

@@ -78,6 +78,7 @@ class Originals {
     bool full = false;                           ///< send refused it, as the buffer was full.
     std::int64_t left_us = -1;                   ///< When it left.
     bool failed = false;                         ///< Its timeout was told before it left.
+    std::int64_t told_us = 0;                    ///< When it returned `result`.
   };
 
   /// Judges the end of a message that is forgotten now: was its application notified?
@@ -97,6 +98,7 @@ class Originals {
   Asked judge_wrap(std::uint16_t node, const Observation& seen, const Net& net, machine::Link link);
   std::uint8_t take_events(std::uint16_t node, std::uint16_t number);
   bool rightly_acked(std::uint16_t node, const Net& message);
+  bool ill_acked(std::uint16_t node, const Net& message);
   void judge_number(std::uint16_t node, const Observation& seen, const Net& net, Asked asked);
 
   Context& context_;

@@ -41,6 +41,21 @@ bool Originals::rightly_acked(std::uint16_t node, const Net& message) {
   return ring.size() == 0;
 }
 
+// Returns whether an ack of the message has a code that is not success: its sender may call that a
+// success or a failure (decision 108).
+bool Originals::ill_acked(std::uint16_t node, const Net& message) {
+  Ring<Ack, kRoom>& ring = acks_[node];
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const Ack& ack = ring.newest(i);
+    const auto body = rubicon::RubiconAckView::parse(ack.net.body());
+    if (ack.number == message.seq_num && body && body->ack() != 0 &&
+        body->type() == rubicon::AmType::kLearningNotification) {
+      return true;
+    }
+  }
+  return false;
+}
+
 void Originals::told(std::uint16_t node, const Observation& seen, const machine::AckReceived& ack) {
   const std::int64_t now = seen.place.time_us;
   Ring<Sent, kRoom>& ring = sent_[node];
@@ -96,7 +111,9 @@ void Originals::told(std::uint16_t node, const Observation& seen, const machine:
   const std::int64_t since_ack = match->given_us < 0 ? 0 : now - match->given_us;
   const bool overdue = match->given_us >= 0 && now > context_.due_us(node, match->given_us);
   const bool too_late = seen.place.timed() && match->place.timed() && now > latest;
-  if (ack.success ? overdue : since_ack > context_.response_us()) {
+  if (!ack.success && !overdue && match->acked && ill_acked(node, match->net)) {
+    context_.findings.kept("T3-SUCCESS"_rule);
+  } else if (ack.success ? overdue : since_ack > context_.response_us()) {
     context_.report("T3-SUCCESS"_rule, Severity::kFail, seen.place, node,
                     {what + ", " + ms_text(now - match->given_us) + " after its ack had come.",
                      "receive_ack(success) when the ack came.",
