@@ -14,7 +14,7 @@ constexpr double kDriftMax = 300e-6;          // Two crystals, with a margin.
 constexpr std::size_t kTrack = 9;             // Neighbours that say where the next one lies.
 constexpr std::size_t kSlopePoints = 300;     // Enough for a slope; pairs of them are counted.
 constexpr std::int64_t kUnwaitedUs = 20'000;  // Even the fastest frame may have waited so long.
-constexpr double kRoundedUs = 2;              // Rounding may take this from an order.
+constexpr std::int64_t kRoundedUs = 2;        // Rounding may take this from an order.
 constexpr double kTrimmed = 0.02;             // Pairs that are a chance, or a message held up.
 constexpr double kSigma = 1.4826;             // Scales a median deviation.
 constexpr std::size_t kDriftFrames = 8;
@@ -211,8 +211,8 @@ Bounds bounds_of(const Points& in, const AlignOptions& options) {
   }
   const auto far_us = static_cast<double>(options.skew_us);
   Bounds out{least(low, far_us), least(high, far_us)};
-  if (out.low) out.low = -*out.low + kRoundedUs;
-  if (out.high) out.high = *out.high - kRoundedUs;
+  if (out.low) out.low = -*out.low + static_cast<double>(kRoundedUs);
+  if (out.high) out.high = *out.high - static_cast<double>(kRoundedUs);
   return out;
 }
 
@@ -290,7 +290,11 @@ class Fit {
     const double drifted = std::abs(drift_of(near, 0)) * span_us;
     set_rests(near, 0, 0);
     const auto skew_us = static_cast<double>(options_.skew_us);
-    return drifted <= skew_us && std::abs(ahead_of(near, options_)) <= skew_us;
+    if (drifted > skew_us || std::abs(ahead_of(near, options_)) > skew_us) return false;
+    // Clocks so near each other may still put an effect before its cause.
+    const auto early = std::ranges::count_if(
+        near, [](const Point& p) { return p.lag_sign * p.ahead_us < -kRoundedUs; });
+    return static_cast<double>(early) <= kTrimmed * static_cast<double>(near.size());
   }
 
   // Returns whether most repeating frames can be pairs of one clock.

@@ -45,7 +45,7 @@ IslandHint Streams::hint_of(const machine::Frame& frame) const {
   Reply reply;
   Net net;
   if (frame.type == am::kJoinReply && parse_reply(frame.payload, reply)) {
-    hint.strong = reply.island;
+    if (!machine::is_reserved(reply.island)) hint.strong = reply.island;
   } else if (AckJoin ack; frame.type == am::kAckJoin && parse_ack_join(frame.payload, ack)) {
     hint.mote = ack.src.pid;
   } else if (frame.type == am::kNet && parse_net(frame.payload, net)) {

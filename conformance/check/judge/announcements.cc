@@ -51,7 +51,8 @@ void Announcements::announce(SinkWatch& sink, const Place& at, machine::Address 
                              const machine::Descriptor& descriptor, bool notice) {
   PairWatch& watch = joins_.pair(sink, address.devid);
   const ReqId content = notice ? "J6-ADD"_rule : "J6-CONTENT"_rule;
-  if (address.pid != sink.island) {
+  if (address.pid != sink.island &&
+      !joins_.keeps_former(sink, address.pid, at, watch.ack.time_us)) {
     const ReqId rule = SinkJoins::wrong_island(sink, address.pid, content);
     // SET_ISLAND_ID may have escaped, or found the line switched off.
     const Severity severity = sink.island_sure ? Severity::kFail : Severity::kInconclusive;
@@ -175,9 +176,9 @@ void Announcements::refuse_report(SinkWatch& sink, PairWatch& watch, const Place
   watch.set.assign(1, next);
 }
 
-void Announcements::showed_life(std::uint16_t sink_device, std::int64_t now_us, bool on_serial) {
+void Announcements::showed_life(std::uint16_t sink_device, std::int64_t now_us) {
   SinkWatch* const sink = joins_.find(sink_device);
-  if (sink == nullptr || !on_serial || now_us < 0) return;
+  if (sink == nullptr || now_us < 0) return;
   sink->behind = sink->serial_us >= 0 && now_us - sink->serial_us <= kFrameUs;
   sink->serial_us = now_us;
   if (sink->debts > 0) overdue_reports(*sink, kNotEnded);

@@ -21,7 +21,7 @@ class Announcements {
               const SerialJoined& joined);
   void told(std::uint16_t sink, const Observation& seen, const machine::MoteJoined& joined);
   /// Notes that the sink sent something at this time, so whatever it still owes is overdue.
-  void showed_life(std::uint16_t sink, std::int64_t now_us, bool on_serial);
+  void showed_life(std::uint16_t sink, std::int64_t now_us);
   /// Notes that the sink's serial line is switched on or off; while off, no report is due.
   void serial_set(std::uint16_t sink, bool on, std::int64_t now_us);
   /// Judges what the sink owes its host, by a log that has all that it does until then.

@@ -96,7 +96,7 @@ void Forwarding::heard_on_serial(std::uint16_t sink, std::uint16_t base, const O
                  net.dest.pid != machine::kBroadcastPid;
   passing.owed = passing.owes && (surely_received || !context_.device(sink).hearing);
   store(line->down, passing, line->owed_down);
-  const bool foreign = net.dest.pid != line->island && net.dest.pid != machine::kBroadcastPid;
+  const bool foreign = net.dest.pid != line->island && !machine::is_reserved(net.dest.pid);
   if (!foreign) return;
   context_.report("N8-LOOP"_rule, Severity::kWeak, seen.place, base,
                   {"A message to " + text_of(net.dest) + " is handed to the sink of island " +
@@ -421,6 +421,25 @@ bool Forwarding::alters(std::uint16_t sink, const Net& net) {
     if (passing.owed && passing.net.src != net.src && resembles(*line, passing, net)) return true;
   }
   return false;
+}
+
+bool Forwarding::alters_up(std::uint16_t sink, const Net& net) {
+  Line* const line = find(sink);
+  if (line == nullptr) return false;
+  for (std::size_t i = 0; i < line->up.size(); ++i) {
+    const Passing& passing = line->up.newest(i);
+    const bool waits = passing.passed == 0 && passing.forbidden == ReqId::kNone;
+    if (waits && passing.net.dest == net.dest && passing.net.seq_num == net.seq_num &&
+        passing.net.src != net.src && begins_with(net, passing.net)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+void Forwarding::went_up(std::uint16_t sink, std::int64_t now_us) {
+  Line* const line = find(sink);
+  if (line != nullptr && line->owed_up > 0) overdue_up(*line, now_us);
 }
 
 bool Forwarding::came_up(std::uint16_t sink, const Net& net) {

@@ -144,8 +144,9 @@ void Judge::radio(std::uint32_t index, const Observation& seen, const Mark& mark
   switch (seen.frame.type) {
     case am::kJoin: {
       Request request;
-      if (!parse_request(seen.frame.payload, request)) return;
+      if (!parse_request(seen.frame.payload, request)) return cut_off(seen, mark.device);
       if (is(mark.device, Role::kMote)) {
+        originals_.asks_to_join(mark.device);
         joins_.repeats(mark.device, seen.place.time_us);
         const bool as_member = join_calls_.request(mark.device, seen, request);
         motes_.request(mark.device, seen, request, as_member);
@@ -157,9 +158,10 @@ void Judge::radio(std::uint32_t index, const Observation& seen, const Mark& mark
     }
     case am::kJoinReply: {
       Reply reply;
-      if (!parse_reply(seen.frame.payload, reply)) return;
+      if (!parse_reply(seen.frame.payload, reply)) return cut_off(seen, mark.device);
       if (is(mark.device, Role::kSink)) {
         sinks_.reply(mark.device, seen, reply);
+        island_shown(mark.device, seen.place.time_us);
         joins_.answered(mark.device, seen.frame.dest, seen.place);
       }
       if (is(mark.device, Role::kMote)) {
@@ -170,7 +172,7 @@ void Judge::radio(std::uint32_t index, const Observation& seen, const Mark& mark
     }
     case am::kAckJoin: {
       AckJoin ack;
-      if (!parse_ack_join(seen.frame.payload, ack)) return;
+      if (!parse_ack_join(seen.frame.payload, ack)) return cut_off(seen, mark.device);
       if (is(mark.device, Role::kMote)) {
         motes_.ack_join(mark.device, seen, ack, link_acked(run_, index));
       }
@@ -182,7 +184,7 @@ void Judge::radio(std::uint32_t index, const Observation& seen, const Mark& mark
     }
     case am::kNet: {
       Net net;
-      if (!parse_net(seen.frame.payload, net)) return;
+      if (!parse_net(seen.frame.payload, net)) return cut_off(seen, mark.device);
       radio_net(index, seen, mark, net);
       return;
     }
@@ -211,7 +213,8 @@ void Judge::joins_heard(std::uint32_t index, const Observation& seen, const Mark
 void Judge::replied(std::uint32_t index, const Observation& seen, const Mark& mark,
                     const Reply& reply) {
   if (seen.received) sinks_.answered(seen.frame.dest, reply.seq_num);
-  context_.for_motes(seen.frame.dest, [&](std::uint16_t mote) {
+  const bool all = seen.frame.dest == machine::kAmBroadcast;
+  context_.for_motes(all ? reply.mote : seen.frame.dest, [&](std::uint16_t mote) {
     const bool given = mark.receiver == mote;
     if (who_.devices[mote].hearing ? !given : seen.received) return;
     const bool only =
@@ -470,15 +473,22 @@ void Judge::serial(std::uint32_t index, const Observation& seen, const Mark& mar
     return;
   }
   if (seen.to_mote && seen.frame.type == am::kConfig) sinks_.configured(sink, seen.frame);
-  if (!seen.to_mote) announcements_.showed_life(mark.device, seen.place.time_us, true);
+  // In a whole log a late report is missing; else it may be this very frame (decision 125).
+  const bool whole_log = who_.devices[mark.device].whole;
+  if (!seen.to_mote && whole_log) announcements_.showed_life(sink, seen.place.time_us);
   Net net;
-  if (seen.frame.type != am::kNet || !parse_net(seen.frame.payload, net)) return;
+  if (seen.frame.type != am::kNet) return;
+  if (!parse_net(seen.frame.payload, net)) return cut_off(seen, mark.device);
   if (!seen.received) whole(seen, mark.device);
   if (!seen.received) originals_.used(mark.device, net.seq_num);
   if (seen.to_mote) {
     down_serial(index, seen, mark, sink, net);
   } else {
     up_serial(seen, mark, sink, net);
+    SerialJoined joined;
+    if (!whole_log && !parse_serial_joined(net, joined)) {
+      announcements_.showed_life(sink, seen.place.time_us);
+    }
   }
   if (net.is_ack()) ack_comes(net);
   if (net.is_ack() && mark.receiver != kNobody) {
@@ -503,8 +513,11 @@ void Judge::up_serial(const Observation& seen, const Mark& mark, std::uint16_t s
   if (!forwarding_.came_up(sink, net) && !originals_.asked(sink, net) &&
       parse_serial_joined(net, joined)) {
     announcements_.report(sink, seen, net, joined);
-  } else if (sinks_.is_own(sink, net.src, seen.place.time_us)) {
+    island_shown(sink, seen.place.time_us);
+  } else if (sinks_.is_own(sink, net.src, seen.place.time_us) &&
+             !forwarding_.alters_up(sink, net)) {
     own_message(sink, seen, net, machine::Link::kSerial, net.src);
+    forwarding_.went_up(sink, seen.place.time_us);
   } else if (forwarding_.came_up(sink, net) ||
              !forged(sink, seen, net, machine::Link::kSerial, address_of(sink))) {
     acks_.showed_life(sink, seen.place.time_us);

@@ -17,6 +17,28 @@ void Judge::mote_hears(std::uint16_t mote, const Observation& seen, const Mark& 
         mark.device, net, mark.receiver == mote);
 }
 
+// Reports a message that ends before it is whole, though its frame is sound.
+void Judge::cut_off(const Observation& seen, std::uint16_t sender) {
+  if (sender == kNobody || seen.received) return;
+  const Bytes bytes = seen.frame.payload;
+  Error error;
+  switch (seen.frame.type) {
+    case am::kJoin: error = rubicon::JoinRequestView::check(bytes); break;
+    case am::kJoinReply: error = rubicon::JoinReplyView::check(bytes); break;
+    case am::kAckJoin: error = rubicon::AckJoinView::check(bytes); break;
+    default: error = rubicon::NetMsgView::check(bytes); break;
+  }
+  context_.report(error.requirement, Severity::kFail, seen.place, sender,
+                  {"A message of " + number(bytes.size()) + " bytes ends before it is whole.",
+                   "All of its fields.",
+                   {}});
+}
+
+// Takes the island that a sink shows: it may not have taken the one that it was told.
+void Judge::island_shown(std::uint16_t sink, std::int64_t now_us) {
+  forwarding_.set_island(sink, sinks_.island(sink), now_us, true);
+}
+
 // Returns what a mote by its own log is to the messages that it hears.
 Judge::Standing Judge::standing(std::uint16_t node) const {
   const Device& device = who_.devices[node];

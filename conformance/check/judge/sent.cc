@@ -13,7 +13,7 @@ using rubicon::Component;
 
 constexpr std::int64_t kAtOnceUs = 50'000;
 constexpr std::int64_t kCallUs = 50'000;  // What send accepted is in its buffer then.
-constexpr std::size_t kBufferOut = 4;  // Messages; release 1.0's radio.
+constexpr std::size_t kBufferOut = 4;     // Messages; release 1.0's radio.
 constexpr std::size_t kFloatBytes = rubicon::SynapticDataLayout::ValuesAt::kUnitBytes;
 
 bool known_trans(std::uint8_t trans_id) {
@@ -84,6 +84,11 @@ void Originals::switched(std::uint16_t node, const machine::SetInterface& set,
       one.since_us = now_us;
     }
   }
+}
+
+void Originals::asks_to_join(std::uint16_t node) {
+  if (context_.device(node).application) return;  // Its log tells reboots.
+  for (std::size_t i = 0; i < sent_[node].size(); ++i) sent_[node].newest(i).acked = true;
 }
 
 // Only a log that has all that the node sends shows that a message never left.

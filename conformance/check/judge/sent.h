@@ -41,6 +41,8 @@ class Originals {
   /// Notes that an interface is switched: while it is off what waits stays, or may be lost.
   void switched(std::uint16_t node, const machine::SetInterface& set, std::int64_t now_us);
   void told(std::uint16_t node, const Observation& seen, const machine::SendResult& result);
+  /// Notes that the node asks to join: in a capture it may have rebooted, and then awaits nothing.
+  void asks_to_join(std::uint16_t node);
   /// Returns whether a call of its application, by a log, asked for such a message that did not
   /// leave yet.
   bool asked(std::uint16_t node, const Net& net) const;

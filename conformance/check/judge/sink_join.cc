@@ -84,10 +84,17 @@ void SinkJoins::begin_life(std::uint16_t sink) {
 void SinkJoins::set_island(std::uint16_t sink, std::uint16_t island, const Place& at, bool sure) {
   SinkWatch* const watch = find(sink);
   if (watch == nullptr) return;
-  const bool same = watch->island == island;
+  if (watch->island == island) {  // It may forget its members, or keep them (decision 123).
+    for (auto& [am, pair] : watch->motes) {
+      SinkHypothesis forgotten;
+      if (surely_lists(pair)) pair.set.insert(pair.set.begin(), forgotten);
+    }
+    watch->island_set = true;
+    watch->island_sure = watch->island_sure || sure;
+    return;
+  }
   watch->island_set = true;
   watch->island_sure = sure;
-  if (same) return;
   watch->former_island = watch->island;
   watch->island_set_us = at.time_us;
   watch->island = island;
@@ -110,6 +117,28 @@ void SinkJoins::set_island(std::uint16_t sink, std::uint16_t island, const Place
   watch->reported_us = -1;
 }
 
+bool SinkJoins::keeps_former(SinkWatch& sink, std::uint16_t shown, const Place& at,
+                             std::int64_t cause_us) {
+  if (sink.former_island == 0 || shown != sink.former_island) return false;
+  if (cause_us >= 0 && cause_us < sink.island_set_us &&
+      at.time_us <= context_.due_us(sink.device, sink.island_set_us)) {
+    return true;
+  }
+  const bool rebooted =
+      sink.behind_us > sink.island_set_us && !context_.device(sink.device).hearing;
+  if (sink.island_sure && !rebooted) return false;
+  context_.report("N9-SET"_rule, Severity::kInconclusive, at, sink.device,
+                  {"The sink acts for island " + number(shown) + " after it was told island " +
+                       number(sink.island) +
+                       (rebooted ? "; its clock began anew, so that it may have lost its power."
+                                 : "; nothing proves that it heard that."),
+                   "Island " + number(sink.island) + ", if it was told.",
+                   {}});
+  sink.island = std::exchange(sink.former_island, 0);
+  sink.island_sure = true;
+  return true;
+}
+
 void SinkJoins::configured(std::uint16_t sink, const machine::Frame& frame) {
   SinkWatch* const watch = find(sink);
   const auto config = rubicon::ConfigView::parse(frame.payload);
@@ -123,8 +152,10 @@ ReqId SinkJoins::wrong_island(const SinkWatch& sink, std::uint16_t other, ReqId 
 
 // Returns whether the sink may hear it. A sink with a log of what it was given hears nothing else.
 bool SinkJoins::hears(const Device& device, const Observation& seen, bool sure) const {
-  if (!device.known || seen.frame.dest != device.am) return false;
-  return device.hearing ? sure : !seen.received;
+  if (!device.known) return false;
+  const bool all = seen.frame.dest == machine::kAmBroadcast;  // Wrong, but it may be heard.
+  if (device.hearing) return sure && !all;
+  return !seen.received && (all || seen.frame.dest == device.am);
 }
 
 JoinSink list_of(const SinkHypothesis& h) {
@@ -274,8 +305,15 @@ void SinkJoins::reply(std::uint16_t sink_device, const Observation& seen, const 
       unanswered.sink = sink_device;
     }
   }
-  if (sink->island == 0) sink->island = reply.island;
-  if (reply.island != sink->island) {
+  judge_clock(*sink, seen, reply);
+  if (sink->island == 0 && !machine::is_reserved(reply.island)) sink->island = reply.island;
+  if (machine::is_reserved(reply.island)) {
+    context_.report("N9-OTHER"_rule, Severity::kFail, seen.place, sink_device,
+                    {"join_reply offers island " + number(reply.island) + ", which is reserved.",
+                     "The island of the sink.",
+                     {}});
+  } else if (reply.island != sink->island &&
+             !keeps_former(*sink, reply.island, seen.place, watch.request.time_us)) {
     const ReqId rule = wrong_island(*sink, reply.island, "J3-ADDRESS"_rule);
     // SET_ISLAND_ID may have escaped, or found the line switched off.
     const Severity severity = sink->island_sure ? Severity::kFail : Severity::kInconclusive;
@@ -293,7 +331,6 @@ void SinkJoins::reply(std::uint16_t sink_device, const Observation& seen, const 
     context_.findings.kept("J3-ADDRESS"_rule);
   }
   sink->island_sure = sink->island_sure || reply.island == sink->island;
-  judge_clock(*sink, seen, reply);
   next_.clear();
   for (const SinkHypothesis& h : watch.set) {
     SinkHypothesis next = h;
@@ -369,7 +406,11 @@ void SinkJoins::judge_clock(SinkWatch& sink, const Observation& seen, const Repl
                       context_.lossy_air ? Severity::kInconclusive : Severity::kFail, seen.place,
                       sink.device, std::move(said));
     } else if (off) {
-      context_.report("J3-DRIFT"_rule, Severity::kWeak, seen.place, sink.device, std::move(said));
+      // A reboot starts it anew, which a capture does not show.
+      const bool anew = reply.time_ms <= passed_ms + kOffMs && reply.time_ms < sink.clock_ms &&
+                        !context_.device(sink.device).hearing;
+      context_.report("J3-DRIFT"_rule, anew ? Severity::kInconclusive : Severity::kWeak, seen.place,
+                      sink.device, std::move(said));
     } else {
       context_.findings.kept("J3-TIME"_rule);
     }

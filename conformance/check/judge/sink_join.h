@@ -133,6 +133,11 @@ class SinkJoins {
   /// Notes that the mote was given a reply to this request, though no sink was seen to send it.
   void answered(std::uint16_t mote_am, std::uint16_t seq_num);
 
+  /// Returns whether a sink that was told another island may show its former one: what made it do
+  /// so came before, or it was never told, or has lost its memory since. In these cases the former
+  /// one is its island again, which is reported as inconclusive.
+  bool keeps_former(SinkWatch& sink, std::uint16_t shown, const Place& at, std::int64_t cause_us);
+
   /// Returns the sink's island now; 0 if unknown.
   std::uint16_t island(std::uint16_t sink) const;
   /// Returns whether `address` is the sink's, or was until so short a time ago that a message from
