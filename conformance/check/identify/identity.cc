@@ -330,6 +330,9 @@ class Identifier {
         sink = add(device);
       }
       const bool logs = owner != logged_sink_.end();
+      // What it sent by radio may all be of the time after its base station set its island.
+      Device& its_sink = out_.devices[sink];
+      if (!logs && line.first != 0 && its_sink.island == line.island) its_sink.island = line.first;
       const std::uint16_t said = logs ? out_.devices[sink].island : std::uint16_t{0};
       out_.devices[sink].taps.push_back(tap);
       out_.sink_of_tap[tap] = sink;

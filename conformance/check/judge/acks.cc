@@ -8,7 +8,11 @@
 
 namespace rubric::check {
 Acks::Acks(Context& context, std::size_t devices)
-    : context_(context), arrived_(devices), owed_(devices, 0), orders_(devices) {}
+    : context_(context),
+      arrived_(devices),
+      owed_(devices, 0),
+      orders_(devices),
+      acked_apps_(devices) {}
 
 void Acks::begin_life(std::uint16_t node) {
   arrived_[node].clear();
@@ -130,6 +134,7 @@ void Acks::sent(std::uint16_t node, const Observation& seen, const Net& ack) {
                   best->whole_us + context_.response_us(), "the ack of " + name_of(best->net));
     judge_ack_order(node, seen, *best);
   }
+  acked_apps_[node].insert(ack.app_id);
   context_.findings.kept("T2-ACK"_rule);
   context_.findings.kept("T2-ONCE"_rule);
   context_.findings.kept("T2-CONTENT"_rule);
@@ -221,7 +226,7 @@ void Acks::refuse(std::uint16_t node, const Observation& seen, const Net& ack, s
     severity = Severity::kInconclusive;
   } else {
     rule = "T2-ONCE"_rule;
-    severity = context_.on_line(node, context_.without(best->sender, best->place.time_us, now));
+    severity = context_.on_line(node, context_.without_copy(best->sender, best->place, now));
     if (context_.lossy_air) severity = Severity::kInconclusive;
     said.text = "A second ack of " + name_of(best->net) + ".";
     said.expected = "One ack for each time that it was received.";

@@ -36,6 +36,7 @@
 #pragma once
 
 #include <cstdint>
+#include <set>
 #include <vector>
 
 #include "conformance/check/judge/context.h"
@@ -97,6 +98,10 @@ class Acks {
   /// Notes that an interface was switched off or the island changed: what is not yet overdue may
   /// never be acked, and, unless its application `still_gets` it, never delivered.
   void interrupted(std::uint16_t node, std::int64_t now_us, bool still_gets = false);
+  /// Returns whether the node has acked a message for that application, so that it has one.
+  bool acks_for(std::uint16_t node, std::uint8_t app_id) const {
+    return acked_apps_[node].contains(app_id);
+  }
   void finish(std::int64_t end_us);
 
  private:
@@ -122,6 +127,7 @@ class Acks {
     std::uint32_t delivered = 0;  ///< The latest that its application got.
   };
   std::vector<Order> orders_;
+  std::vector<std::set<std::uint8_t>> acked_apps_;  ///< APPIDs of messages that a node acked.
 };
 
 }  // namespace rubric::check

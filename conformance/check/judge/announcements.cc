@@ -140,6 +140,13 @@ void Announcements::refuse_report(SinkWatch& sink, PairWatch& watch, const Place
   if (!has_ack && may_have_come) severity = Severity::kInconclusive;
   if (h.member) {
     rule = "J6-REPEAT"_rule;
+    severity = context_.on_line(sink.device, severity);  // Its island may have been set.
+    // With an ack_join of a later request only the reply between them may be missing.
+    if (watch.asked && has_ack && watch.request.time_us <= watch.ack.time_us &&
+        watch.answered_seq != watch.request_seq) {
+      severity =
+          std::min(severity, context_.without(sink.device, watch.request.time_us, at.time_us));
+    }
     said.text = what + " of mote " + number(mote_am) + " again, without a new join.";
     said.expected = "One " + what + " for each join; a repeated ack_join changes nothing.";
   } else if (watch.ignored_ack == "J6-SENDER"_rule) {

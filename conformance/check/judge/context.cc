@@ -109,6 +109,9 @@ void Context::look_up() {
     only_sink = sinks.empty() ? index : kNobody;
     sinks.push_back(index);
   }
+  const bool stranger = std::ranges::any_of(
+      who.devices, [&](const Device& d) { return !d.known && d.am == sink_am && d.radio; });
+  if (stranger) only_sink = kNobody;
   const Given given(options);
   const std::uint16_t said = given.sink_am().value_or(sink_am);
   if (mote_of_am[said] == kNobody) sink_am = said;
@@ -305,6 +308,16 @@ bool Context::ack_timeout_stated() const {
 Severity Context::without(std::uint16_t cause, std::int64_t from_us, std::int64_t to_us) const {
   return who.maybe_unseen(cause, from_us, to_us, options) ? Severity::kInconclusive
                                                           : Severity::kFail;
+}
+
+Severity Context::without_copy(std::uint16_t sender, const Place& first,
+                               std::int64_t now_us) const {
+  constexpr std::int64_t kCopyUs = 100'000;  // A link has repeated a frame by then.
+  const bool late = now_us > due_us(sender, first.time_us) + kCopyUs;
+  const Severity severity = without(sender, first.time_us, now_us);
+  // A copy has the DSN of the first, so that none seems to be missing.
+  const bool told = options.sniffer_complete || device(sender).hearing;
+  return late || told ? severity : std::min(severity, Severity::kInconclusive);
 }
 
 Severity Context::without_mote(std::uint16_t am, std::int64_t from_us, std::int64_t to_us) const {

@@ -104,6 +104,8 @@ struct Context {
   /// Returns the severity of "X without an earlier Y of `cause`": kFail only if no Y can have
   /// escaped.
   Severity without(std::uint16_t cause, std::int64_t from_us, std::int64_t to_us) const;
+  /// Returns the same where Y is the link's own copy of a frame that `sender` sent at `first`.
+  Severity without_copy(std::uint16_t sender, const Place& first, std::int64_t now_us) const;
   /// Returns the same where any mote of that address may have sent Y.
   Severity without_mote(std::uint16_t am, std::int64_t from_us, std::int64_t to_us) const;
   /// Returns the same where Y may lie any time before, even before the capture.

@@ -96,6 +96,15 @@ void Forwarding::heard_on_serial(std::uint16_t sink, std::uint16_t base, const O
                  net.dest.pid != machine::kBroadcastPid;
   passing.owed = passing.owes && (surely_received || !context_.device(sink).hearing);
   store(line->down, passing, line->owed_down);
+  // A capture does not show whether the base station wrote it; from PEIS come other islands' only.
+  const bool own_island = net.src.pid == line->island && net.src.devid != machine::kNullDevid;
+  if (own_island && net.sound && !context_.device(base).hearing && !holds(line->up, net, false)) {
+    context_.report("N1-SRC"_rule, Severity::kWeak, seen.place, base,
+                    {"A message from " + text_of(net.src) + " is handed to the sink of island " +
+                         number(line->island) + ".",
+                     "Messages of the base station, or of other islands.",
+                     {}});
+  }
   const bool foreign = net.dest.pid != line->island && !machine::is_reserved(net.dest.pid);
   if (!foreign) return;
   context_.report("N8-LOOP"_rule, Severity::kWeak, seen.place, base,
@@ -204,7 +213,7 @@ void Forwarding::refuse_up(Line& line, const Observation& seen, const Net& net) 
       said.text = "The sink forwards " + name_of(net) + " again.";
       said.expected = "Once for each time that it was received.";
       context_.report("N6-ONCE"_rule,
-                      context_.without(passing.sender, passing.place.time_us, seen.place.time_us),
+                      context_.without_copy(passing.sender, passing.place, seen.place.time_us),
                       seen.place, line.sink, std::move(said));
       return;
     }

@@ -75,6 +75,20 @@ void JoinWatch::repeats(std::uint16_t mote, std::int64_t now_us) {
   });
 }
 
+void JoinWatch::asks_again(std::uint16_t mote, std::uint16_t seq_num, std::int64_t now_us) {
+  const auto same = [seq_num](const Debt& debt) {
+    return debt.owes == Owes::kAck && debt.seq_num == seq_num;
+  };
+  const bool log = context_.device(mote).hearing;
+  if (!log && std::ranges::any_of(debts_[mote], same)) settle(mote, now_us, false);
+}
+
+// A late answer is legal (decision 125): it is missing once the mote's call is over.
+void JoinWatch::hears_on(std::uint16_t sink, std::int64_t now_us) {
+  const std::int64_t call_us = context_.profile().join_requests_max * context_.join_period_us();
+  if (!context_.device(sink).hearing) settle(sink, now_us - call_us, false);
+}
+
 void JoinWatch::surely_asked(std::uint16_t sink, std::uint32_t index, std::uint16_t seq_num) {
   const Observation& seen = context_.run.seen[index];
   const std::uint16_t am = seen.frame.src;

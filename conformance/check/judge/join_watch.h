@@ -27,6 +27,12 @@ class JoinWatch {
   /// its call, is too late for a repetition that was due, where the join period is stated.
   void repeats(std::uint16_t mote, std::int64_t now_us);
 
+  /// Called before MoteJoins takes a request: one with the number of an offer that it surely had
+  /// shows that it did not take that.
+  void asks_again(std::uint16_t mote, std::uint16_t seq_num, std::int64_t now_us);
+  /// Notes that the sink passes on what its radio heard, while a mote that it surely heard waits.
+  void hears_on(std::uint16_t sink, std::int64_t now_us);
+
   // Called after the same function of MoteJoins or SinkJoins.
   void asked(std::uint16_t mote, std::uint32_t index);
   void surely_asked(std::uint16_t sink, std::uint32_t index, std::uint16_t seq_num);

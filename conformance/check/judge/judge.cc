@@ -148,6 +148,7 @@ void Judge::radio(std::uint32_t index, const Observation& seen, const Mark& mark
       if (is(mark.device, Role::kMote)) {
         originals_.asks_to_join(mark.device);
         joins_.repeats(mark.device, seen.place.time_us);
+        joins_.asks_again(mark.device, request.seq_num, seen.place.time_us);
         const bool as_member = join_calls_.request(mark.device, seen, request);
         motes_.request(mark.device, seen, request, as_member);
         joins_.asked(mark.device, index);
@@ -381,7 +382,7 @@ void Judge::radio_net(std::uint32_t index, const Observation& seen, const Mark& 
   const std::uint16_t sure = sure_sink(index);
   forwarding_.heard_on_radio(seen, sender, net, sure);
   const auto hear = [&](std::uint16_t mote) {
-    if (mote != sender) mote_hears(mote, seen, mark, net);
+    if (mote != sender) mote_hears(index, mote, seen, mark, net);
   };
   if (seen.frame.dest == machine::kAmBroadcast) {
     for (std::size_t i = 0; i < who_.devices.size(); ++i) {
@@ -521,6 +522,7 @@ void Judge::up_serial(const Observation& seen, const Mark& mark, std::uint16_t s
   } else if (forwarding_.came_up(sink, net) ||
              !forged(sink, seen, net, machine::Link::kSerial, address_of(sink))) {
     acks_.showed_life(sink, seen.place.time_us);
+    if (forwarding_.came_up(sink, net)) joins_.hears_on(sink, seen.place.time_us);
     forwarding_.sent_on_serial(sink, seen, net);
   }
   base_station_hears(sink, seen, mark, net);

@@ -3,18 +3,25 @@
 #include <algorithm>
 
 #include "conformance/check/judge/judge_pass.h"
+#include "conformance/check/links.h"
 
 namespace rubric::check {
 using machine::Role;
 
-void Judge::mote_hears(std::uint16_t mote, const Observation& seen, const Mark& mark,
-                       const Net& net) {
+void Judge::mote_hears(std::uint32_t index, std::uint16_t mote, const Observation& seen,
+                       const Mark& mark, const Net& net) {
   const std::uint16_t am = who_.devices[mote].am;
   const std::optional<machine::Address> own = motes_.address(mote);
   // If its island is uncertain, anything for its devid may be for it.
   const machine::Address presumed = own.value_or(machine::Address{net.dest.pid, am});
+  // A link ack of the one node with that address shows that its radio received the frame
+  // (decision 127), and former acks that its application is there (decision 111).
+  const bool linked = !who_.devices[mote].hearing && seen.frame.dest == am && own &&
+                      context_.mote_of_am[am] == mote && context_.next_of_am[mote] == kNobody &&
+                      motes_.surely_member(mote) && acks_.acks_for(mote, net.app_id) &&
+                      link_acked(run_, index);
   hears(mote, {Role::kMote, presumed, true, context_.sink_am}, machine::Link::kRadio, seen,
-        mark.device, net, mark.receiver == mote);
+        mark.device, net, mark.receiver == mote || linked);
 }
 
 // Reports a message that ends before it is whole, though its frame is sound.

@@ -65,7 +65,8 @@ class Judge {
   }
   enum class Standing : std::uint8_t { kOutside, kUnknown, kPerhaps, kMember };
   Standing standing(std::uint16_t node) const;
-  void mote_hears(std::uint16_t mote, const Observation& seen, const Mark& mark, const Net& net);
+  void mote_hears(std::uint32_t index, std::uint16_t mote, const Observation& seen,
+                  const Mark& mark, const Net& net);
   void hears(std::uint16_t node, const machine::Router& router, machine::Link from,
              const Observation& seen, std::uint16_t sender, const Net& net, bool sure);
   // Counts an ack at the originator of the acked message.

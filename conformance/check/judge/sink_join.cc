@@ -425,7 +425,10 @@ void SinkJoins::refuse_reply(SinkWatch& sink, PairWatch& watch, const Observatio
   const std::uint16_t am = seen.frame.dest;
   const std::int64_t now = seen.place.time_us;
   const SinkHypothesis& h = watch.set.back();
-  const std::int64_t since = watch.asked ? watch.request.time_us : context_.run.start_us;
+  // The request that it answers may lie before the capture.
+  const std::int64_t before_us = watch.request.time_us - context_.join_period_us();
+  const bool covered = watch.asked && before_us >= context_.run.start_us;
+  const std::int64_t since = covered ? watch.request.time_us : context_.run.start_us - 1;
   Said said;
   for (auto it = watch.set.rbegin(); it != watch.set.rend(); ++it) {
     said.hypotheses.push_back({sentence(*it),
