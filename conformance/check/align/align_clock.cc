@@ -239,7 +239,7 @@ class Fit {
       : run_(run), common_(common), options_(options), points_(points_of(run, common)) {}
 
   ClockFit fit() {
-    if (points_.empty() ? guesses_near_zero() : near_zero()) {
+    if ((points_.empty() ? guesses_near_zero() : near_zero()) && guesses_in_order()) {
       out_.clocks = Clocks::kAgree;
       out_.frames = points_.size();
       return out_;
@@ -312,6 +312,22 @@ class Fit {
     const auto count =
         std::count_if(near.begin(), near.end(), [](const auto& one) { return one.second; });
     return 2 * static_cast<std::size_t>(count) > near.size();
+  }
+
+  // Returns whether each repeating frame that is near one that it could be has its cause before it.
+  bool guesses_in_order() const {
+    std::map<std::uint32_t, std::pair<bool, bool>> near;  // By frame index in the second file.
+    for (const Pair& pair : common_.guesses) {
+      const std::int64_t a = run_.seen[pair.a].place.time_us;
+      const std::int64_t b = run_.seen[pair.b].place.time_us;
+      if (a == kNoStamp || b == kNoStamp || pair.lag_sign == 0) continue;
+      const std::int64_t later_us = pair.lag_sign * (b - a);
+      auto& [early, in_order] = near[pair.b];
+      early = early || (later_us < -kRoundedUs && later_us >= -options_.skew_us);
+      in_order = in_order || (later_us >= -kRoundedUs && later_us <= options_.response_us);
+    }
+    return std::ranges::none_of(
+        near, [](const auto& one) { return one.second.first && !one.second.second; });
   }
 
   // Returns whether, in the time that both files cover, at least one of them misses no more frames

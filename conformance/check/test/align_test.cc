@@ -23,7 +23,7 @@ constexpr const char* kCaptures[] = {"a2_join_data_sensible_start",
                                      "f_synaptic",
                                      "h10_hdlc_escape_and_bad_serial",
                                      "h4_stale_bytes"};
-constexpr double kAhead_s[] = {0, -3600, -1.5, -0.2, 0.2, 1e6};
+constexpr double kAhead_s[] = {0, -3600, -1.5, -0.2, -0.03, 0.03, 0.2, 1e6};
 
 std::string simulated(const simulate::Scenario& scenario,
                       const simulate::ScenarioOptions& options) {
