@@ -412,19 +412,19 @@ void Forwarding::showed_life(std::uint16_t sink, std::int64_t now_us) {
   if (line != nullptr && line->owed_down > 0) overdue_down(*line, now_us);
 }
 
-// Returns whether a message was made of one that came: it has its source and number, or, by a log
-// of the sink in which that one still waits, one of these and all the rest.
+// Returns whether a message was made of one that came: it has its source and number, or, while that
+// one waits, the number and all but the source; by a log of the sink also all but the number.
 bool Forwarding::resembles(const Line& line, const Passing& came, const Net& net) const {
   const bool source = came.net.src == net.src;
   const bool numbered = came.net.seq_num == net.seq_num;
   if (source && numbered) return true;
-  return context_.device(line.sink).hearing && came.owed && (source || numbered) &&
+  return came.owed && (numbered || (source && context_.device(line.sink).hearing)) &&
          came.net.dest == net.dest && equal(came.net.payload, net.payload);
 }
 
 bool Forwarding::alters(std::uint16_t sink, const Net& net) {
   Line* const line = find(sink);
-  if (line == nullptr || !context_.device(sink).hearing) return false;
+  if (line == nullptr) return false;
   for (std::size_t i = 0; i < line->down.size(); ++i) {
     const Passing& passing = line->down.newest(i);
     if (passing.owed && passing.net.src != net.src && resembles(*line, passing, net)) return true;

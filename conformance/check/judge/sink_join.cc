@@ -282,8 +282,10 @@ bool SinkJoins::owes(SinkWatch& sink, std::uint16_t mote_am, std::uint16_t seq_n
 void SinkJoins::reply(std::uint16_t sink_device, const Observation& seen, const Reply& reply) {
   SinkWatch* const sink = find(sink_device);
   if (sink == nullptr) return;
-  const bool astray = seen.frame.dest != reply.mote && owes(*sink, reply.mote, reply.seq_num) &&
-                      !owes(*sink, seen.frame.dest, reply.seq_num);
+  const bool astray =
+      seen.frame.dest != reply.mote &&
+      (seen.frame.dest == machine::kAmBroadcast ||
+       (owes(*sink, reply.mote, reply.seq_num) && !owes(*sink, seen.frame.dest, reply.seq_num)));
   const std::uint16_t am = astray ? reply.mote : seen.frame.dest;
   if (astray) {
     context_.report(
@@ -459,7 +461,7 @@ void SinkJoins::refuse_reply(SinkWatch& sink, PairWatch& watch, const Observatio
     // frames of its line not that its island was set.
     severity = watch.ack.time_us < sink.behind_us ? Severity::kInconclusive
                                                   : context_.on_line(sink.device, Severity::kFail);
-    said.text = "join_reply to mote " + number(am) + ", which the sink has reported as a member.";
+    said.text = "join_reply to mote " + number(am) + ", which the sink lists as a member.";
     said.expected = "No answer to a mote that is listed.";
   } else if (watch.asked && reply.seq_num != watch.request_seq) {
     rule = "J3-SEQ"_rule;
