@@ -227,7 +227,6 @@ void Acks::refuse(std::uint16_t node, const Observation& seen, const Net& ack, s
   } else {
     rule = "T2-ONCE"_rule;
     severity = context_.on_line(node, context_.without_copy(best->sender, best->place, now));
-    if (context_.lossy_air) severity = Severity::kInconclusive;
     said.text = "A second ack of " + name_of(best->net) + ".";
     said.expected = "One ack for each time that it was received.";
   }

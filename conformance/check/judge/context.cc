@@ -316,8 +316,8 @@ Severity Context::without_copy(std::uint16_t sender, const Place& first,
   const bool late = now_us > due_us(sender, first.time_us) + kCopyUs;
   const Severity severity = without(sender, first.time_us, now_us);
   // A copy has the DSN of the first, so that none seems to be missing.
-  const bool told = options.sniffer_complete || device(sender).hearing;
-  return late || told ? severity : std::min(severity, Severity::kInconclusive);
+  const bool told = options.sniffer_complete || (sender != kNobody && device(sender).hearing);
+  return (late || told) && !lossy_air ? severity : std::min(severity, Severity::kInconclusive);
 }
 
 Severity Context::without_mote(std::uint16_t am, std::int64_t from_us, std::int64_t to_us) const {
