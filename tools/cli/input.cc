@@ -257,7 +257,7 @@ class Run {
     say_what_is_left_out(*reader);
   }
 
-  static std::string_view unknown_format(Bytes beginning) {
+  static std::string unknown_format(Bytes beginning) {
     if (beginning.size() > 1 && beginning[0] + beginning[1] == 0xFF + 0xFE) {
       return "this is UTF-16 text, as PowerShell writes; 'iconv -f UTF-16 -t UTF-8 FILE' makes "
              "UTF-8 of it";
@@ -265,6 +265,14 @@ class Run {
     if (is_hex_dump(beginning)) {
       return "this is a hex dump with offsets; 'text2pcap -l 195 FILE FILE.pcap' makes a capture "
              "of it (-l 230 for radio frames without FCS)";
+    }
+    if (const PrefixedLine line = find_prefixed_line(beginning); line.number != 0) {
+      const std::string prefix(line.prefix.begin(), line.prefix.end());
+      return fmt::format(
+          "line {} has hex text after '{}', which is no time stamp that is known; these are: "
+          "[12.3], (12.3), 12.3, 1764000000, 10:00:00 or 10:00:00 AM, after 2026-11-24, "
+          "24.11.2026, 24/11/2026, Nov 24, Nov 24 2026 or no date, and then perhaps 'mote 2:'",
+          line.number, prefix.substr(0, prefix.find_last_not_of(" \t") + 1));
     }
     return "this begins like no serial line, forwarder stream, pcap, pcapng or hex text; name it "
            "with --input-format, or try 'tshark -r FILE -w FILE.pcapng'";
