@@ -215,10 +215,9 @@ class Run {
     }
     passed_over_.clear();
     InputFile file(files_[source_.file_index], options_.follow, on_idle_);
+    packed_damage_ = false;
     read(file);
-    if (file.damage().empty()) return;
-    damaged_ = true;
-    remark(file.damage());
+    say_packed_damage(file);
   }
 
   void read(InputFile& file) {
@@ -339,6 +338,7 @@ class Run {
       reread_fcs(fcs_, reread);
       give(reread, reader.interfaces());
     };
+    packed_ = file.is_packed();
     while (true) {
       if (size) reader.feed(Bytes(chunk_.get(), size), deliver);
       progress_.advance(size);
@@ -347,7 +347,14 @@ class Run {
       size = file.read(chunk_.get(), kChunkBytes);
       if (size == 0) break;
     }
+    say_packed_damage(file);  // Before what it leads to: a frame that is cut.
     reader.finish(deliver);
+  }
+
+  void say_packed_damage(const InputFile& file) {
+    if (file.damage().empty() || std::exchange(packed_damage_, true)) return;
+    damaged_ = true;
+    remark(file.damage());
   }
 
   // Reads a binary file as one message.
@@ -374,8 +381,12 @@ class Run {
                                  : std::string_view{};
     if (is_damage(packet)) {
       damaged_ = true;
-      remark(fmt::format("damaged at byte {}: {}", packet.offset_bytes,
-                         reflect::fault_sentence(packet.error.fault)));
+      const bool follows = packed_damage_ && packet.error.fault == Fault::kCut;
+      if (!follows) {
+        remark(fmt::format("damaged at byte {}{}: {}", packet.offset_bytes,
+                           packed_ ? " of what it unpacks to" : "",
+                           reflect::fault_sentence(packet.error.fault)));
+      }
     }
     ++source_.number;
     if (is_foreign(packet)) {
@@ -395,7 +406,9 @@ class Run {
   Source source_;
   InputResult result_;
   FcsKind fcs_ = FcsKind::kCrc;
-  bool damaged_ = false;  // A file has damaged places.
+  bool damaged_ = false;        // A file has damaged places.
+  bool packed_ = false;         // The present file is compressed;
+  bool packed_damage_ = false;  // that its compressed bytes are damaged was said.
   std::map<std::uint16_t, std::uint64_t>
       passed_over_;    // Packets of the present file, by link type.
   bool lost_ = false;  // The line is gone, and that was said.
