@@ -178,7 +178,9 @@ bool begins_packet(Bytes text) {
 }
 
 std::size_t unknown_prefix(Bytes line) {
-  const auto* at = std::find_if_not(line.begin(), line.end(), is_space);
+  const Bytes text = line.from(stamp_size(line));
+  const auto* at = std::find_if_not(text.begin(), text.end(), is_space);
+  if (begins_packet(text)) return 0;
   while (at != line.end()) {
     if (begins_packet(line.from(static_cast<std::size_t>(at - line.begin())))) {
       return static_cast<std::size_t>(at - line.begin());

@@ -80,7 +80,8 @@ std::size_t stamp_size(Bytes line);
 /// Returns whether hex text begins with the bytes of a packet's header.
 bool begins_packet(Bytes text);
 
-/// Returns the bytes of a line before hex text that begins_packet(); 0 without any.
+/// Returns the bytes of a line before hex text that begins_packet(), a known stamp included; 0
+/// where nothing else is before it.
 std::size_t unknown_prefix(Bytes line);
 
 /// Returns the bytes of the mark with which editors begin a file of UTF-8 text: 3 or 0.

@@ -269,7 +269,7 @@ TEST(WireHex, WordsBeforeAPacketAreFound) {
   const PrefixedLine line = find_prefixed_line(view(text));
   EXPECT_EQ(line.number, 2u);
   EXPECT_EQ(std::string(line.prefix.begin(), line.prefix.end()), "mote INFO 2 > ");
-  EXPECT_EQ(find_prefixed_line(view(packet + "INFO 00 ff\n")).number, 0u);
+  EXPECT_EQ(find_prefixed_line(view("[12.3] " + packet + "INFO 00 ff\n")).number, 0u);
 }
 
 TEST(WireHex, AMarkBeforeTheTextIsPassedOver) {
