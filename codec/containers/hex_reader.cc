@@ -50,13 +50,44 @@ bool is_clock(std::string_view word) {
          is_digit(word[hours + 1]) && is_digit(word[hours + 2]) && word.back() != ':';
 }
 
-// Returns whether a word is as 2026-11-24 or 24/11/2026.
+// Returns whether a word is as 2026-11-24, 24/11/2026 or 24.11.2026.
 bool is_date(std::string_view word) {
-  const std::size_t first = word.find_first_of("-/");
-  return first != word.npos && first != 0 && word.find(word[first], first + 1) != word.npos &&
-         word.back() != word[first] &&
-         word.find_first_not_of(
-             std::string_view(word[first] == '-' ? "-0123456789" : "/0123456789")) == word.npos;
+  const std::size_t first = word.find_first_not_of(kDigits);
+  if (first == word.npos || first == 0 || std::string_view("-/.").find(word[first]) == word.npos) {
+    return false;
+  }
+  const auto is_other = [&](char c) { return c != word[first] && !is_digit(c); };
+  return word.find(word[first], first + 1) != word.npos && word.back() != word[first] &&
+         std::none_of(word.begin(), word.end(), is_other);
+}
+
+// Returns whether a text begins with the whole seconds since 1970, or the milli-, micro- or
+// nanoseconds, and hex text. Bytes in words of that size look the same where the size is even: all
+// words but the last have one size then.
+bool begins_with_epoch(std::string_view text) {
+  const std::string_view word = word_of(text);
+  const std::size_t size = word.size();
+  const bool sized = size == 10 || size == 13 || size == 16 || size == 19;
+  if (!sized || word[0] != '1' || word.find_first_not_of(kDigits) != word.npos) return false;
+  if (size % 2 != 0) return true;
+  const std::string_view rest = text.substr(after_blanks(text, size));
+  const std::string_view next = word_of(rest);
+  if (next.empty() || next[0] == '#' || text.find(':') != text.npos) return false;
+  const std::size_t third = rest.find_first_not_of(" \t\r", next.size());
+  const bool last = third == rest.npos || rest[third] == '#';
+  return next.size() > size || (next.size() < size && !last);
+}
+
+// Returns the end of a text that names who printed a packet, as `mote 2:`; 0 without one.
+std::size_t label_end(std::string_view text) {
+  if (!text.starts_with("mote") && !text.starts_with("node")) return 0;
+  constexpr std::size_t kName = 4;
+  const std::size_t number = after_blanks(text, kName);
+  const std::size_t end = std::min(text.find_first_not_of(kDigits, number), text.size());
+  if (end == number || text.substr(end, 1) != ":") return 0;
+  const std::size_t next = after_blanks(text, end + 1);
+  const Bytes rest(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
+  return begins_packet(rest.from(next)) ? next : 0;
 }
 
 bool is_month(std::string_view word) {
@@ -75,13 +106,27 @@ std::size_t date_end(std::string_view text) {
   word = word_of(text.substr(day));
   const bool whole =
       !word.empty() && word.size() <= 2 && word.find_first_not_of(kDigits) == word.npos;
-  return whole ? after_blanks(text, day + word.size()) : 0;
+  if (!whole) return 0;
+  end = after_blanks(text, day + word.size());
+  word = word_of(text.substr(end));
+  const bool is_year = word.size() == 4 && word.find_first_not_of(kDigits) == word.npos;
+  return is_year ? after_blanks(text, end + word.size()) : end;
+}
+
+// Returns the end of a time of day, as 12:34:56 or 10:00:00 AM; 0 without one.
+std::size_t clock_end(std::string_view text) {
+  const std::size_t end = word_of(text).size();
+  if (!is_clock(text.substr(0, end))) return 0;
+  const std::size_t half = after_blanks(text, end);
+  const std::string_view word = word_of(text.substr(half));
+  const bool is_half = word == "AM" || word == "PM" || word == "am" || word == "pm";
+  return is_half ? half + word.size() : end;
 }
 
 // Returns the end of the stamp itself; 0 without one.
 std::size_t stamp_end(std::string_view text) {
-  if (text.starts_with('[')) {
-    const std::size_t end = text.find(']');
+  if (text.starts_with('[') || text.starts_with('(')) {
+    const std::size_t end = text.find(text[0] == '[' ? ']' : ')');
     const bool dated = text.substr(0, end).find_first_of(kDigits) != text.npos;
     return end != text.npos && dated ? end + 1 : 0;
   }
@@ -93,8 +138,8 @@ std::size_t stamp_end(std::string_view text) {
     return word.size();
   }
   const std::size_t date = date_end(text);
-  word = word_of(text.substr(date));
-  return is_clock(word) ? date + word.size() : 0;
+  const std::size_t clock = clock_end(text.substr(date));
+  return clock == 0 ? 0 : date + clock;
 }
 
 std::uint16_t link_type_of(const ReaderOptions& options) {
@@ -112,10 +157,37 @@ std::uint16_t link_type_of(const ReaderOptions& options) {
 std::size_t stamp_size(Bytes line) {
   const std::string_view text(reinterpret_cast<const char*>(line.data()), line.size());
   const std::size_t begin = after_blanks(text, 0);
-  const std::size_t end = stamp_end(text.substr(begin, kStampMost));
-  if (end == 0) return 0;
-  const std::size_t next = after_blanks(text, begin + end);
-  return text.substr(next, 2) == "->" ? after_blanks(text, next + 2) : next;
+  std::size_t end = stamp_end(text.substr(begin, kStampMost));
+  if (end == 0 && begins_with_epoch(text.substr(begin))) end = word_of(text.substr(begin)).size();
+  std::size_t next = begin;
+  if (end != 0) next = after_blanks(text, begin + end);
+  if (end != 0 && text.substr(next, 2) == "->") next = after_blanks(text, next + 2);
+  const std::size_t label = label_end(text.substr(next));
+  return end == 0 && label == 0 ? 0 : next + label;
+}
+
+bool begins_packet(Bytes text) {
+  std::size_t pairs = 0;
+  for (std::size_t at = 0; pairs != kPacketLineBytes; at += 2, ++pairs) {
+    while (at < text.size() && is_space(text[at])) ++at;
+    if (at + 1 >= text.size() || !is_hex_digit(text[at]) || !is_hex_digit(text[at + 1])) {
+      return false;
+    }
+  }
+  return true;
+}
+
+std::size_t unknown_prefix(Bytes line) {
+  const Bytes text = line.from(stamp_size(line));
+  const auto* at = std::find_if_not(text.begin(), text.end(), is_space);
+  if (begins_packet(text)) return 0;
+  while (at != line.end()) {
+    if (begins_packet(line.from(static_cast<std::size_t>(at - line.begin())))) {
+      return static_cast<std::size_t>(at - line.begin());
+    }
+    at = std::find_if_not(std::find_if(at, line.end(), is_space), line.end(), is_space);
+  }
+  return 0;
 }
 
 std::size_t mark_size(Bytes text) {
@@ -244,7 +316,7 @@ void HexReader::pass_over() {
 void HexReader::line(Bytes whole, PacketSink sink) {
   ++line_number_;
   if (line_number_ == 1) whole = whole.from(mark_size(whole));
-  const std::size_t stamp = is_log_ ? stamp_size(whole) : 0;
+  const std::size_t stamp = stamp_size(whole);
   const Bytes text = whole.from(stamp);
   Packet packet;
   packet.line = line_number_;

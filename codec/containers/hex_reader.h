@@ -18,9 +18,9 @@ inline constexpr std::size_t kHexLineMax = 64 * 1024;
 /// that begins_serial_frame() has the bytes of a serial line, flags and escapes included; a frame
 /// goes on in the next lines until its closing flag.
 ///
-/// In a log stamp_size() bytes of each line are passed over: they say when a line was printed, not
-/// when a packet came. The lines that is_noise() knows, and those with fewer bytes than a packet's
-/// header, are passed over and counted; those of read_radio_line() are radio frames.
+/// stamp_size() bytes of each line are passed over: they say when a line was printed, not when a
+/// packet came. In a log the lines that is_noise() knows, and those with fewer bytes than a
+/// packet's header, are passed over and counted; those of read_radio_line() are radio frames.
 ///
 /// Faults: kUnexpected (a line that is no hex text: the line itself is delivered, the offset counts
 /// its characters), kTooLong (a line beyond kHexLineMax), kCut never: the last line needs no end;
@@ -69,10 +69,20 @@ bool is_noise(Bytes line);
 bool begins_serial_frame(Bytes bytes);
 
 /// Returns the bytes of the time stamp that a line begins with, blanks and an arrow after it
-/// included; 0 without one. Stamps are a text in brackets with a digit, as `[12.345]`; a number
-/// with a point, as `1700000000.123`; and a time of day, as `12:34:56.789`, after a date or not:
-/// those of `ts`, minicom and the Arduino IDE are. Hex text never begins so.
+/// included, and of a label as `mote 2:` or `node 2:` before a packet; 0 without both. Stamps are a
+/// text in brackets with a digit, as `[12.345]` or `(12.345)`; a number with a point, as
+/// `1700000000.123`; a time of day, as `12:34:56.789` or `10:00:00 AM`, after a date or not: those
+/// of `ts`, minicom and the Arduino IDE are. Hex text never begins so. And a number of 10, 13, 16
+/// or 19 digits from 1 on, as `date +%s` prints it, before words of another size: hex text has
+/// words of one size.
 std::size_t stamp_size(Bytes line);
+
+/// Returns whether hex text begins with the bytes of a packet's header.
+bool begins_packet(Bytes text);
+
+/// Returns the bytes of a line before hex text that begins_packet(), a known stamp included; 0
+/// where nothing else is before it.
+std::size_t unknown_prefix(Bytes line);
 
 /// Returns the bytes of the mark with which editors begin a file of UTF-8 text: 3 or 0.
 std::size_t mark_size(Bytes text);

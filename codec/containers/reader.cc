@@ -152,6 +152,18 @@ std::unique_ptr<Reader> make_reader(InputFormat format, const ReaderOptions& opt
 
 bool is_hex_dump(Bytes first_bytes) { return is_hex_dump(look_at_lines(sample_of(first_bytes))); }
 
+PrefixedLine find_prefixed_line(Bytes first_bytes) {
+  Bytes rest = sample_of(first_bytes);
+  for (std::uint64_t number = 1; !rest.empty(); ++number) {
+    const auto size =
+        static_cast<std::size_t>(std::find(rest.begin(), rest.end(), '\n') - rest.begin());
+    const std::size_t prefix = unknown_prefix(rest.first(size));
+    if (prefix != 0) return {number, rest.first(prefix)};
+    rest = rest.from(std::min(size + 1, rest.size()));
+  }
+  return {};
+}
+
 bool lines_end_with_fcs(Bytes first_bytes) {
   const Bytes sample = sample_of(first_bytes);
   const TextLines found = look_at_lines(sample.from(mark_size(sample)));

@@ -87,4 +87,13 @@ bool lines_end_with_fcs(Bytes first_bytes);
 /// no hex text.
 bool is_hex_dump(Bytes first_bytes);
 
+/// A line of text in which words precede a packet as hex text.
+struct PrefixedLine {
+  std::uint64_t number = 0;  ///< From 1; 0: there is none.
+  Bytes prefix;
+};
+
+/// Returns the first such line of text that begins like this.
+PrefixedLine find_prefixed_line(Bytes first_bytes);
+
 }  // namespace rubric

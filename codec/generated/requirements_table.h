@@ -431,7 +431,7 @@ constexpr reflect::Requirement kRequirements[] = {
      reflect::kRoleBaseStation, true, ""},
     {"N9-SET", "MUST", "network, island id",
      "A config message SET_ISLAND_ID over serial sets the sink's island id, and a base "
-     "station sends it when its own is set; what both do after it uses the new one.",
+     "station sends it when its own is set; from then on both use the new id.",
      "release 1.0 NetworkP",
      reflect::kRoleSink | reflect::kRoleBaseStation, false, ""},
     {"N9-OTHER", "MUST", "network, island id",

@@ -285,7 +285,7 @@ void set_island(Node& node, std::uint16_t island) {
   State& state = node.state;
   const bool changes = island != state.island;
   //= N9-SET: A config message SET_ISLAND_ID over serial sets the sink's island id, and a base
-  //= station sends it when its own is set; what both do after it uses the new one.
+  //= station sends it when its own is set; from then on both use the new id.
   state.island = island;
   node.actions.followed("N9-SET"_rule);
   if (changes) state.present.clear();

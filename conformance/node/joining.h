@@ -197,7 +197,7 @@ inline void Node::hear_config(Bytes payload) {
   if (!config || config->type() != rubicon::CommandCode::kSetIslandId) return;
   if (is_reserved(config->value()) || config->value() == island_) return;
   //= N9-SET: A config message SET_ISLAND_ID over serial sets the sink's island id, and a base
-  //= station sends it when its own is set; what both do after it uses the new one.
+  //= station sends it when its own is set; from then on both use the new id.
   island_ = config->value();
   //= N9-MEMBERS: A sink whose island id changes forgets its members.
   admissions_.clear();

@@ -79,7 +79,8 @@ class AppReader {
 
   void wire(const YAML::Node& node) {
     try {
-      out_.wire = &find_wire_(text(node));
+      const bool scalar = node.IsScalar() || node.IsNull();
+      out_.wire = &find_wire_(scalar ? node.Scalar() : text(node));
     } catch (const std::invalid_argument& mistake) {
       fail(node, mistake.what());
     }

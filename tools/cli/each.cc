@@ -123,12 +123,14 @@ std::vector<OneRun> runs_of(const std::vector<std::string>& names, const Shard& 
   return out;
 }
 
-// Returns what the result of a run depends on: the settings, and which file it was. Empty if it is
-// not there.
+// Returns what the result of a run depends on: the program, the settings, and which file it was.
+// Empty if it is not there.
 std::string key_of(const EachJob& job, const std::string& file) {
   struct stat is {};
-  if (::stat(file.c_str(), &is) != 0) return {};
-  const std::string text = fmt::format("{}\n{}\n{}\n{}\n{}.{:09}", job.command, job.settings, file,
+  struct stat program {};
+  if (::stat(file.c_str(), &is) != 0 || ::stat("/proc/self/exe", &program) != 0) return {};
+  const std::string text = fmt::format("{}.{}\n{}\n{}\n{}\n{}\n{}.{:09}", program.st_size,
+                                       program.st_mtim.tv_sec, job.command, job.settings, file,
                                        is.st_size, is.st_mtim.tv_sec, is.st_mtim.tv_nsec);
   return fmt::format("{:016x}", hash_of(text));
 }

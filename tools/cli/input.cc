@@ -215,10 +215,9 @@ class Run {
     }
     passed_over_.clear();
     InputFile file(files_[source_.file_index], options_.follow, on_idle_);
+    packed_damage_ = false;
     read(file);
-    if (file.damage().empty()) return;
-    damaged_ = true;
-    remark(file.damage());
+    say_packed_damage(file);
   }
 
   void read(InputFile& file) {
@@ -257,7 +256,7 @@ class Run {
     say_what_is_left_out(*reader);
   }
 
-  static std::string_view unknown_format(Bytes beginning) {
+  static std::string unknown_format(Bytes beginning) {
     if (beginning.size() > 1 && beginning[0] + beginning[1] == 0xFF + 0xFE) {
       return "this is UTF-16 text, as PowerShell writes; 'iconv -f UTF-16 -t UTF-8 FILE' makes "
              "UTF-8 of it";
@@ -265,6 +264,14 @@ class Run {
     if (is_hex_dump(beginning)) {
       return "this is a hex dump with offsets; 'text2pcap -l 195 FILE FILE.pcap' makes a capture "
              "of it (-l 230 for radio frames without FCS)";
+    }
+    if (const PrefixedLine line = find_prefixed_line(beginning); line.number != 0) {
+      const std::string prefix(line.prefix.begin(), line.prefix.end());
+      return fmt::format(
+          "line {} has hex text after '{}', which is no time stamp that is known; these are: "
+          "[12.3], (12.3), 12.3, 1764000000, 10:00:00 or 10:00:00 AM, after 2026-11-24, "
+          "24.11.2026, 24/11/2026, Nov 24, Nov 24 2026 or no date, and then perhaps 'mote 2:'",
+          line.number, prefix.substr(0, prefix.find_last_not_of(" \t") + 1));
     }
     return "this begins like no serial line, forwarder stream, pcap, pcapng or hex text; name it "
            "with --input-format, or try 'tshark -r FILE -w FILE.pcapng'";
@@ -331,6 +338,7 @@ class Run {
       reread_fcs(fcs_, reread);
       give(reread, reader.interfaces());
     };
+    packed_ = file.is_packed();
     while (true) {
       if (size) reader.feed(Bytes(chunk_.get(), size), deliver);
       progress_.advance(size);
@@ -339,7 +347,14 @@ class Run {
       size = file.read(chunk_.get(), kChunkBytes);
       if (size == 0) break;
     }
+    say_packed_damage(file);  // Before what it leads to: a frame that is cut.
     reader.finish(deliver);
+  }
+
+  void say_packed_damage(const InputFile& file) {
+    if (file.damage().empty() || std::exchange(packed_damage_, true)) return;
+    damaged_ = true;
+    remark(file.damage());
   }
 
   // Reads a binary file as one message.
@@ -366,8 +381,12 @@ class Run {
                                  : std::string_view{};
     if (is_damage(packet)) {
       damaged_ = true;
-      remark(fmt::format("damaged at byte {}: {}", packet.offset_bytes,
-                         reflect::fault_sentence(packet.error.fault)));
+      const bool follows = packed_damage_ && packet.error.fault == Fault::kCut;
+      if (!follows) {
+        remark(fmt::format("damaged at byte {}{}: {}", packet.offset_bytes,
+                           packed_ ? " of what it unpacks to" : "",
+                           reflect::fault_sentence(packet.error.fault)));
+      }
     }
     ++source_.number;
     if (is_foreign(packet)) {
@@ -387,7 +406,9 @@ class Run {
   Source source_;
   InputResult result_;
   FcsKind fcs_ = FcsKind::kCrc;
-  bool damaged_ = false;  // A file has damaged places.
+  bool damaged_ = false;        // A file has damaged places.
+  bool packed_ = false;         // The present file is compressed;
+  bool packed_damage_ = false;  // that its compressed bytes are damaged was said.
   std::map<std::uint16_t, std::uint64_t>
       passed_over_;    // Packets of the present file, by link type.
   bool lost_ = false;  // The line is gone, and that was said.

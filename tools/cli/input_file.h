@@ -38,6 +38,8 @@ class InputFile {
   InputFile& operator=(const InputFile&) = delete;
 
   bool is_regular() const { return is_regular_; }
+  /// Returns whether the bytes that were read so far are unpacked ones.
+  bool is_packed() const { return unpacker_ != nullptr; }
 
   /// Reads up to `size` bytes and returns their number, 0 at the end, which a followed file has
   /// only when the user asks to stop. Unpacks what begins as gzip or zstd data, up to the first

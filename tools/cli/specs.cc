@@ -1,6 +1,7 @@
 #include "tools/cli/specs.h"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <memory>
@@ -10,6 +11,7 @@
 #include "codec/reflect/registry.h"
 #include "codec/reflect/requirements.h"
 #include "codec/reflect/suggest.h"
+#include "codec/text/files.h"
 #include "codec/text/text.h"
 #include "spec/compiler/emit/emit.h"
 #include "spec/compiler/emit/tables/built_tables.h"
@@ -110,8 +112,27 @@ const reflect::Protocol& protocol_of(const std::string& spec) {
   const std::vector<std::string> names = protocol_names();
   const bool shipped = std::find(names.begin(), names.end(), spec) != names.end();
   if (shipped || names_file(spec)) return read_spec(spec);
+  struct stat status {};
+  if (::stat(spec.c_str(), &status) == 0) {
+    const char* const what =
+        S_ISDIR(status.st_mode) ? "a folder" : "a file whose name does not end with .ksy";
+    throw UsageError("--spec", fmt::format("'{}' is {}; expected a .ksy file, or a protocol of "
+                                           "--spec list",
+                                           spec, what));
+  }
   throw UsageError(
       "--spec", fmt::format("unknown protocol '{}'{}", spec, reflect::did_you_mean(spec, names)));
+}
+
+std::string text_of_spec(const std::string& spec) {
+  std::string out;
+  if (!names_file(spec)) return out;
+  read_spec(spec);
+  for (const auto& one : read_specs().at(spec).model.specs) {
+    std::string text;
+    if (text::read_file(one->file, text) == 0) out += text;  // Shipped ones are no files.
+  }
+  return out;
 }
 
 void use_requirements_of(const std::string& file) {

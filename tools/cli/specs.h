@@ -25,6 +25,9 @@ std::vector<std::string> protocol_names();
 /// UsageError with the nearest name if there is none. `list` prints the names, and ends it.
 const reflect::Protocol& protocol_of(const std::string& spec);
 
+/// Returns the texts of the files that a --spec reads, imported ones too; empty of a name.
+std::string text_of_spec(const std::string& spec);
+
 /// Sets the rules of this file in the place of RUBICON's. Its mistakes are printed as rubricc does,
 /// and end the subcommand.
 void use_requirements_of(const std::string& file);

@@ -94,10 +94,15 @@ bool add_file(const CheckOptions& options, const std::string& file, check::RunRe
 
 check::Run read_run(const CheckOptions& options, bool& undamaged) {
   check::RunReader reader(align_options(options));
+  std::vector<std::string> facts;
   for (const std::string& file : options.input.files) {
-    undamaged = add_file(options, file, reader) && undamaged;
+    if (add_file(options, file, reader)) continue;
+    undamaged = false;
+    facts.push_back((file == "-" ? "stdin" : file) + " is damaged or cut; the rest is judged");
   }
-  return reader.finish();
+  check::Run run = reader.finish();
+  run.facts.insert(run.facts.begin(), facts.begin(), facts.end());
+  return run;
 }
 
 int check_files(const CheckOptions& options) {

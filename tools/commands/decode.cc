@@ -304,9 +304,9 @@ int decode_each(const DecodeOptions& options) {
     throw cli::UsageError("--write", "of which run? --each has many");
   Decode{options};  // Finds what makes no sense before the first run.
   const cli::InputOptions& in = options.input;
-  const std::string settings =
-      fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}", in.format, in.fcs, fmt::join(in.links, " "),
-                  in.spec, in.as_message, options.filter, options.count, options.strict);
+  const std::string settings = fmt::format(
+      "{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}", in.format, in.fcs, fmt::join(in.links, " "), in.spec,
+      in.as_message, options.filter, options.count, options.strict, cli::text_of_spec(in.spec));
   const cli::EachJob job{"decode", settings};
   return cli::each(options.each, job, in.files, "-",
                    [&](const std::string& file, std::string& members) {
@@ -372,8 +372,8 @@ void add_decode(cli::Command& app) {
       "  echo 0a000c | rubric decode --as config\n"
       "  rubric decode --each 'captures/*.pcapng' --shard 1/4    # counts, a line of JSON a run\n"
       "  rubric decode serial@/dev/ttyUSB0:telosb --write run.pcapng    # until Ctrl-C\n"
-      "Exit codes: 0 clean, 1 something malformed was read, 64 usage, 66 input cannot be read,\n"
-      "74 output cannot be written.");
+      "Exit codes: 0 clean, 1 something malformed was read, 64 usage, 66 input cannot be read, or\n"
+      "is damaged or cut, 74 output cannot be written; with --each 2 a run's process was killed.");
   command.exit_code_of([options] { return run_decode(*options); });
 }
 

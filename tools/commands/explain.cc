@@ -153,9 +153,9 @@ std::string rules_like(const std::string& name) {
   if (hint.empty()) hint = reflect::did_you_mean(in_case(name, std::tolower), names);
   if (hint.empty()) hint = reflect::did_you_mean(in_case(name, std::toupper), names);
   throw cli::UsageError(
-      "X", fmt::format("nothing is called '{}'{}{}{}; 'rubric messages' lists the messages, "
-                       "'rubric coverage' the rules of behaviour",
-                       name, hint, rules_like(name), cli::spec_with_message(protocol, name)));
+      fmt::format("nothing is called '{}'{}{}{}; 'rubric messages' lists the messages, "
+                  "'rubric coverage' the rules of behaviour",
+                  name, hint, rules_like(name), cli::spec_with_message(protocol, name)));
 }
 
 bool parse_frame(const std::vector<std::string>& words, std::vector<std::uint8_t>& bytes) {
@@ -171,7 +171,7 @@ int explain_bytes(const ExplainOptions& options, const Protocol& protocol,
   auto given = explain::take_frame(bytes, message ? "bare" : options.framing);
   if (!given) {
     throw cli::UsageError(
-        "X", "these bytes begin like no frame; say what they are with --framing or --as");
+        "these bytes begin like no frame; say what they are with --framing or --as");
   }
   if (message) given->what = fmt::format("the message {} alone", message->id);
   // Moving the bytes left them in their place, so the packet still points at them.
@@ -214,7 +214,7 @@ int run_explain(const ExplainOptions& options) {
   } else if (parse_frame(options.words, bytes)) {
     code = explain_bytes(options, protocol, bytes, text);
   } else if (as_bytes) {
-    throw cli::UsageError("X", "expected hex digits, two a byte");
+    throw cli::UsageError("expected hex digits, two a byte");
   } else {
     nothing_of(options.words.front(), protocol);
   }

@@ -341,7 +341,9 @@ int run_test(TestOptions options) {
   how.color = cli::use_color(options.color, fd);
   how.quiet = options.quiet;
   how.verbose = options.verbose;
-  how.times = options.verbose || (fd >= 0 && isatty(fd) == 1);
+  const bool terminal = fd >= 0 && isatty(fd) == 1;
+  how.cuts = terminal || options.width != 0;
+  how.times = options.verbose || terminal;
   Text text(options, options.format == "text");
   const report::KnownFailures expected = plan.expected;
   const suite::SuiteRun all = work(options, cases, std::move(plan), earlier, how, text);

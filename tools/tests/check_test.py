@@ -163,9 +163,10 @@ class Formats(Folder):
     def test_json(self):
         for file in capture_files():
             report = as_json(file)
-            self.assertEqual(list(report), ["schema", "verdict", "expected", "exit_code", "profile",
-                                            "sniffer", "start", "files", "findings", "counts",
-                                            "facts", "exercised"])
+            self.assertEqual(list(report), ["schema", "verdict", "expected", "exit_code",
+                                            "input_missing", "profile", "sniffer", "start", "files",
+                                            "findings", "counts", "facts", "exercised"])
+            self.assertFalse(report["input_missing"])
             self.assertEqual(report["schema"], "rubric.check/1")
             self.assertEqual(report["files"], [str(file)])
             for finding in report["findings"]:
@@ -351,11 +352,30 @@ class Inputs(Folder):
         self.assertEqual(code, 66, out)
         self.assertIn("damaged at byte", err)
         self.assertIn("Verdict: pass, but input is damaged or missing: 0 failures", out)
-        self.assertEqual(as_json(cut)["exit_code"], 66)
+        self.assertNotIn("time stamps", out)
+        report = as_json(cut)
+        self.assertEqual((report["exit_code"], report["input_missing"]), (66, True))
+        self.assertEqual(report["facts"][0], f"{cut} is damaged or cut; the rest is judged")
+        [suite] = xml.etree.ElementTree.fromstring(check("--format", "junit", cut)[1])
+        self.assertEqual([case.get("classname") for case in suite.findall("testcase")
+                          if case.find("error") is not None], ["rubric.check.input"])
+        check(cut, "--report", self.folder / "report")
+        self.assertIn("as expected, but input is damaged or missing</h2>",
+                      (self.folder / "report/index.html").read_text(encoding="utf-8"))
         code, out, _ = check("--each", cut)
         self.assertEqual(code, 66, out)
         failing = self.write("failing.pcapng", WRONG_SEQ.read_bytes() + b"x")
         self.assertEqual(check(failing)[0], 1)
+
+    def test_a_damaged_place_leaves_the_order_of_frames(self):
+        """It has no stamp of its own, which must not take the others' away."""
+        whole = FIRMWARE / "b_reliable.pcapng"
+        damaged = self.write("damaged.pcapng", whole.read_bytes() + bytes.fromhex("06000000"))
+        known = ("--sniffer", "complete", "--start", "cold")
+        wanted = as_json(whole, *known)["findings"]
+        found = as_json(damaged, *known)["findings"]
+        self.assertIn(("T2-CONTENT", "fail"), [(f["requirement"], f["severity"]) for f in wanted])
+        self.assertEqual([f | {"file": ""} for f in found], [f | {"file": ""} for f in wanted])
 
     def test_unreadable(self):
         for path, says in [

@@ -364,7 +364,7 @@ class Explain(unittest.TestCase):
             words = re.split(r"\s*(sentence|wire spec|codec|machine|flaws|checker): ", block)[1:]
             places[text.split(":")[0]] = {
                 part: re.split(r",\s+", files.strip())
-                for part, files in zip(words[::2], words[1::2]) if not files.startswith("not by")}
+                for part, files in zip(words[::2], words[1::2]) if not files.startswith("never by")}
         self.assertEqual(places.keys(), levels.keys())
         parts_of = {"conformance/machine": ("machine", "flaws"), "conformance/check": ("checker",)}
         for folder, parts in parts_of.items():  # Nothing is left out, ...
@@ -385,6 +385,20 @@ class Explain(unittest.TestCase):
                 self.assertRegex(pathlib.Path(file).read_text(), rf"\b{rule}\b")
             if level == "MUST" and not places[rule]:
                 self.assertIn(".rtr)", rubric("explain", rule)[1].decode(), rule)
+
+    def test_what_is_reported_in_place_of_a_rule(self):
+        page = pathlib.Path("conformance/check/README.md").read_text(encoding="utf-8")
+        rows = re.findall(r"(?m)^\| ([\w, -]+) \| (.*) \|$", page.split("that are never named")[1])
+        self.assertGreater(len(rows), 5)
+        for rules, instead in rows[1:]:
+            for rule in rules.split(", "):
+                out = " ".join(rubric("explain", rule)[1].decode().split())
+                self.assertIn(f"checker: never by this name; in its place: {instead} ", out)
+
+    def test_a_name_that_nothing_has(self):
+        code, _, err = rubric("explain", "NOPE")
+        self.assertEqual(code, 64)
+        self.assertTrue(err.startswith("rubric explain: nothing is called 'NOPE'"), err)
 
     def test_long_lists_of_cases_are_cut(self):
         out = rubric("explain", "J1-REQUEST")[1].decode()

@@ -133,6 +133,13 @@ class Each(testing.Folder):
                          [line["file"] for line in lines(first.stdout)])
         third = run("check", "--each", self.runs, "--resume", state)
         self.assertIn(f"({len(CAPTURES)} known", third.stderr)
+        # The text of a spec counts, too.
+        spec = self.folder / "mine.ksy"
+        text = pathlib.Path("spec/wire/oscilloscope.ksy").read_text(encoding="utf-8")
+        how = ("decode", "--each", touched, "--spec", spec, "--resume", self.folder / "decoded")
+        for says, known in ((text, False), (text, True), (text + "# other\n", False)):
+            spec.write_text(says, encoding="utf-8")
+            self.assertEqual("(1 known" in run(*how).stderr, known)
         state.write_bytes(b"something of mine\n")
         self.assertEqual(run("check", "--each", self.runs, "--resume", state).returncode, USAGE)
         self.assertEqual(state.read_bytes(), b"something of mine\n")

@@ -310,6 +310,7 @@ class Mixed(Captures):
             self.assertEqual(code, NO_INPUT)
             self.assertIn(f"stdin: damaged at byte {len(cut)}: its compressed data end too soon",
                           err)
+            self.assertEqual(err.count("damaged at byte"), 1)
             frames = [line for line in out.splitlines() if line.startswith(" ")]
             while frames and frames[-1] not in wanted:  # Of a frame that is cut.
                 frames.pop()

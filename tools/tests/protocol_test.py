@@ -166,6 +166,7 @@ class Protocol(testing.Folder):
                  ":3:10: error: level is 'SHALL'"),
                 (app, "calls:", "callls:", ":12:1: 'callls' is no key of a protocol; known are"),
                 (app, "probes.ksy", "nothing.ksy", ":3:7: no file probes/nothing.ksy"),
+                (app, "wire: probes.ksy", "wire: ''", ":3:7: expected a .ksy file of the folder"),
                 (rules, "- id: ANSWER-NUMBER\n", "- id: ANSWER-NUMBER\n  roles: [node]\n",
                  ":3:3: error: unknown key 'roles' of a requirement; known are id"),
                 (app, "probes.ksy", "probs",

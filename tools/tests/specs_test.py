@@ -108,6 +108,13 @@ class Shipped(unittest.TestCase):
             for message in re.findall(r": (\w+)", cases):
                 self.assertIn((file.stem, message), there)
 
+    def test_what_is_no_spec(self):
+        for name, says in [("spec", "'spec' is a folder"), ("README.md", "does not end with .ksy"),
+                           ("oscilloscop", "(did you mean 'oscilloscope'?)")]:
+            done = rubric("decode", "--spec", name, stdin=BLINK)
+            self.assertEqual(done.returncode, 64)
+            self.assertIn(says, done.stderr)
+
     def test_generated_frames_decode_as_expected(self):
         for spec in ("blink_to_radio", "ctp", "dissemination", "ftsp", "printf", "none"):
             made = rubric("generate", "--spec", spec, "--count", "60", "--valid", "0.5",

@@ -116,6 +116,16 @@ class Running(Folder):
         self.assertEqual(code, 1)
         self.assertIn(f"line 5 of {trace}", out)
         self.assertIn(f"--cases own.clock {trace}\n", out)
+        self.assertIn("\nFAIL own.clock\n  Asks for:", out)
+        # A line of the list is whole where nobody said how wide it may be.
+        trace.write_text(trace.read_text().replace("0..50", "2147483000..2147483648"))
+        code, out, _ = test("--target", "machine", trace)
+        self.assertEqual(code, 2)
+        says = "2147483000..2147483648 is too late: a case ends by tick 2147483647 (24 days)"
+        self.assertRegex(out, rf"(?m)^error +own.clock +{re.escape(says)}$")
+        self.assertIn(f"\nERROR own.clock\n  Broke:    {says}\n", out)
+        out = test("--target", "machine", "--width", "90", trace)[1]
+        self.assertRegex(out, r"(?m)^error +own.clock .{49,}\.\.\.$")
 
     def test_what_is_stated_moves_the_windows(self):
         """A mote with timers of its own passes when it states them, in hello or by --state."""

@@ -203,11 +203,15 @@ TEST(WireHex, StampsOfALogArePassedOver) {
   for (const std::string stamp :
        {"[12.345] ", "[2026-11-24 13:55:05.123] ", "12.345 ", "1700000000.123456\t",
         "12:34:56.789 -> ", "Nov 24 13:55:05 ", "Dec  4 13:55:05 ", "2026-11-24 13:55:05,123 ",
-        "2026-11-24T13:55:05+0100 ", "24/11/2026 13:55 "}) {
+        "2026-11-24T13:55:05+0100 ", "24/11/2026 13:55 ", "(1764000000.123) ",
+        "24.11.2026 10:00:00 ", "Nov 24 2026 10:00:00 ", "10:00:00 AM ",
+        "11/24/2026 10:00:00 pm "}) {
     const std::string log = stamp + "serial@/dev/ttyUSB0:115200: resynchronising\n" + stamp +
                             packet + "\r\n" + stamp + "\n" + stamp + packet + "g\n";
     EXPECT_EQ(detect(view(log.substr(0, log.size() - 2))), InputFormat::kLog) << log;
     EXPECT_EQ(detect(view(stamp + packet)), InputFormat::kLog) << log;
+    const auto hex = make_reader(InputFormat::kHex);
+    EXPECT_EQ(read_all(*hex, view(stamp + packet)).at(0).bytes.size(), 12u) << stamp;
     const auto reader = make_reader(InputFormat::kLog);
     const std::vector<Kept> got = read_all(*reader, view(log));
     ASSERT_EQ(got.size(), 2u) << log;
@@ -217,11 +221,55 @@ TEST(WireHex, StampsOfALogArePassedOver) {
     EXPECT_EQ(got[1].packet.error.offset_bytes, stamp.size() + packet.size());
     EXPECT_EQ(reader->noise().lines, 1u);
   }
-  for (const char* none : {"00 ff", "12:34 ", "0010: 00 ff", "[00 ff", "[] 00", "dec 4 00",
-                           "12. 00", "1.2.3 00", "2026-11-24 00", "serial@x:1.2"}) {
+  for (const char* none : {"00 ff",
+                           "12:34 ",
+                           "0010: 00 ff",
+                           "[00 ff",
+                           "[] 00",
+                           "dec 4 00",
+                           "12. 00",
+                           "1.2.3 00",
+                           "2026-11-24 00",
+                           "serial@x:1.2",
+                           "(00 ff",
+                           "1764000000",
+                           "1764000000 00",
+                           "1764000000 1764000001 00",
+                           "1764000000 00 # one group and a rest",
+                           "2764000000 00 ff",
+                           "176400000 00 ff",
+                           "1764000000\t1\t2\t3: 0x00ff",
+                           "mote 2: 25 C",
+                           "mote: 00 ff ff 00 00 04 22 06 00",
+                           "robot 2: 00 ff ff 00 00 04 22 06"}) {
     const bool clock = std::string_view(none) == "12:34 ";
     EXPECT_EQ(stamp_size(view(none)), clock ? 6u : 0u) << none;
   }
+}
+
+TEST(WireHex, StampsAndLabelsBeforeAPacketArePassedOver) {
+  for (const std::string stamp :
+       {"1764000000 ", "1764000000123\t", "1764000000123456 -> ", "[12.3] mote 2: ", "node2: "}) {
+    for (const std::string packet :
+         {"00 ff ff 00 00 04 22 06 00 02 00 01", "00ffff000004220600020001"}) {
+      EXPECT_EQ(detect(view(stamp + packet)), InputFormat::kLog) << stamp << packet;
+      for (const InputFormat format : {InputFormat::kLog, InputFormat::kHex}) {
+        const auto reader = make_reader(format);
+        const std::vector<Kept> got = read_all(*reader, view(stamp + packet));
+        ASSERT_EQ(got.size(), 1u) << stamp << packet;
+        EXPECT_EQ(got[0].bytes.size(), 12u) << stamp << packet;
+      }
+    }
+  }
+}
+
+TEST(WireHex, WordsBeforeAPacketAreFound) {
+  const std::string packet = "00 ff ff 00 00 04 22 06 00 02 00 01\n";
+  const std::string text = "12 words\nmote INFO 2 > " + packet;
+  const PrefixedLine line = find_prefixed_line(view(text));
+  EXPECT_EQ(line.number, 2u);
+  EXPECT_EQ(std::string(line.prefix.begin(), line.prefix.end()), "mote INFO 2 > ");
+  EXPECT_EQ(find_prefixed_line(view("[12.3] " + packet + "INFO 00 ff\n")).number, 0u);
 }
 
 TEST(WireHex, AMarkBeforeTheTextIsPassedOver) {

@@ -88,6 +88,22 @@ void observe(const Packet& packet, std::string_view interface_name, ReadSource& 
   run.seen.push_back(seen);
 }
 
+// A damaged place of a capture has no stamp: it gets that of the frame before it in its file, else
+// of the one after it.
+void stamp_damaged(Run& run) {
+  const auto from_the_one_before = [](auto begin, auto end) {
+    for (auto at = begin; at != end; ++at) {
+      if (at == begin || at->kind != Observation::Kind::kDamaged) continue;
+      const Place& before = at[-1].place;
+      if (at->place.time_us == kNoStamp && before.file == at->place.file) {
+        at->place.time_us = before.time_us;
+      }
+    }
+  };
+  from_the_one_before(run.seen.begin(), run.seen.end());
+  from_the_one_before(run.seen.rbegin(), run.seen.rend());
+}
+
 // Makes times count from `begin_us`, else from the first one, and orders what several taps saw.
 Run in_one_order(Run run, const AlignOptions& options, std::optional<std::int64_t>& begin_us) {
   const auto by_file = [](const Observation& a, const Observation& b) {
@@ -98,6 +114,7 @@ Run in_one_order(Run run, const AlignOptions& options, std::optional<std::int64_
   }
   mend_steps(run);
   align(run, options);
+  stamp_damaged(run);
   // A log counts from the start of its run. Captures of simulated networks do, too; those of real
   // ones have stamps of this century, and then the log is taken to begin with the capture.
   constexpr std::int64_t kTenYearsUs = 315'360'000'000'000;

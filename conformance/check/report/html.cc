@@ -74,8 +74,9 @@ std::string html_report(const Story& story, const TextOptions& options, std::str
   out +=
       "</style>\n</head>\n<body>\n<header class=\"top\"><h1>Rubric <span>check</span></h1>"
       "</header>\n<main id=\"main\">\n";
-  out += fmt::format("<h2>Verdict: {}, {}</h2>\n", verdict_name(story.outcome.verdict),
-                     story.outcome.as_expected() ? "as expected" : "not as expected");
+  out += fmt::format("<h2>Verdict: {}, {}{}</h2>\n", verdict_name(story.outcome.verdict),
+                     story.outcome.as_expected() ? "as expected" : "not as expected",
+                     story.outcome.input_missing ? ", but input is damaged or missing" : "");
   out += fmt::format("<p>{} frames, {} rules exercised, {} findings, {} unexpected failures.</p>\n",
                      found.frames, found.exercised.size(), found.findings.size(),
                      story.outcome.unexpected_failures);

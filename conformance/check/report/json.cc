@@ -102,6 +102,7 @@ text::Json json_report(const Story& story) {
                              {"verdict", verdict_name(story.outcome.verdict)},
                              {"expected", story.outcome.as_expected()},
                              {"exit_code", story.outcome.exit_code()},
+                             {"input_missing", story.outcome.input_missing},
                              {"profile", o.deployed ? "deployed" : "paper"},
                              {"sniffer", o.sniffer_complete ? "complete" : "unknown"},
                              {"start", o.start_cold ? "cold" : "unknown"},

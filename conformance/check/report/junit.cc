@@ -33,6 +33,13 @@ class Junit {
                         {"verdict", std::string(verdict_name(story_.outcome.verdict))},
                         {"frames", std::to_string(story_.report.frames)}};
     for (const auto& [id, one] : by_rule()) suite.cases.push_back(rule(id, one));
+    if (story_.outcome.input_missing) {
+      suite.cases.push_back({.class_name = "rubric.check.input",
+                             .name = "the input is whole",
+                             .outcome = JunitCase::Outcome::kError,
+                             .type = "input",
+                             .message = "Input is damaged or missing; the rest was judged."});
+    }
     for (std::size_t e = 0; e < story_.outcome.results.size(); ++e) {
       if (story_.outcome.results[e].came != Came::kNotAsked) suite.cases.push_back(expectation(e));
     }

@@ -79,8 +79,9 @@ std::string places_text(const Requirement& rule, std::span<const RulePlace> plac
   }
   if (out.empty()) return "";
   const bool of_behaviour = rule.roles != 0;
-  if (of_behaviour && files[std::size(kParts) - 1].empty()) {
-    out += "    checker: not by this name; see conformance/check/README.md\n";
+  const std::string_view instead = reported_instead(rule.id);
+  if (of_behaviour && files[std::size(kParts) - 1].empty() && !instead.empty()) {
+    out += wrapped(fmt::format("checker: never by this name; in its place: {}", instead), 4);
   }
   return "  In the code:\n" + out;
 }

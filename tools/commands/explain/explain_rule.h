@@ -33,6 +33,10 @@ struct RulePlace {
 /// when the program is built.
 std::span<const RulePlace> rule_places();
 
+/// Returns what the checker reports in place of a rule that it never names, by the table of
+/// conformance/check/README.md; empty of other rules. Generated when the program is built.
+std::string_view reported_instead(std::string_view rule);
+
 /// Returns a rule with its roles and source, the differences of release 1.0 and the profiles, the
 /// fields that refer to it in `protocols`, the files where it is, and its golden cases: if there
 /// are many, the first ones, and how to see the others.

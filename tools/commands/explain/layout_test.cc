@@ -166,9 +166,8 @@ TEST(Explain, RuleOfBehaviour) {
   EXPECT_THAT(text, HasSubstr("  For: mote\n"));
   EXPECT_THAT(text, HasSubstr("  Accepted by --profile deployed: A joinIsland call without"));
   EXPECT_THAT(text, testing::EndsWith("  Cases: none\n"));
-  const RulePlace unseen[] = {{"S1-ID", "conformance/machine/synaptic.cc"}};
-  EXPECT_THAT(explain_rule({}, "S1-ID"_rule, {}, {}, unseen),
-              HasSubstr("    checker: not by this name; see conformance/check/README.md\n"));
+  EXPECT_THAT(explain_rule({}, "S2-PHASE"_rule),
+              HasSubstr("    checker: never by this name; in its place: nothing: when a node"));
   EXPECT_THAT(explain_rule({}, "T2-LOOP"_rule, {}), HasSubstr("For: mote, sink, base station;"));
 }
 

@@ -244,7 +244,7 @@ class Story {
     out_ += '\n';
     out_ += styled(options_, style_of(one.result.verdict, one.unexpected()), head_of(one),
                    case_name(one));
-    out_ += wrapped(kIndent, one.comment, options_.width);
+    if (!one.comment.empty()) out_ += wrapped(kIndent, one.comment, options_.width);
     const bool known = one.expectation == Expectation::kAsExpected;
     out_ += field(known ? "Expected:" : "Known:", one.expected_reason, options_);
     if (one.result.verdict == CaseVerdict::kError) {
@@ -344,7 +344,7 @@ std::string case_text(const CaseRun& one, const TextOptions& options) {
   std::string out = fmt::format("{:<12} {}", verdict, name);
   if (!rest.empty()) {
     out = fmt::format("{:<12} {:<{}} {}", verdict, name, kNameColumns, rest);
-    if (out.size() > options.width) out = out.substr(0, options.width - 3) + "...";
+    if (options.cuts && out.size() > options.width) out = out.substr(0, options.width - 3) + "...";
   }
   return painted(options, style, verdict) + out.substr(verdict.size()) + '\n';
 }

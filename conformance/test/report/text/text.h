@@ -12,6 +12,7 @@ namespace rubric::suite {
 struct TextOptions : text::TextStyle {
   bool quiet = false;    ///< Only what makes the run fail has a line.
   bool verbose = false;  ///< Each failure in full, not the first of each rule alone.
+  bool cuts = true;      ///< A case's line ends at the width.
   bool times = false;    ///< Prints durations. Without, the same run gives the same text.
 };
 
