@@ -11,6 +11,7 @@ using machine::Link;
 using machine::Role;
 using machine::Route;
 
+constexpr std::uint32_t kSilent = 3;  // So many messages of which none is forwarded are no chance.
 constexpr std::int64_t kStartUs = 5'000'000;  // A buffer may hold older frames until then.
 
 // On the serial line nbytes and the bytes after the payload may differ (N6-CONTENT).
@@ -47,6 +48,7 @@ void Forwarding::heard_on_radio(const Observation& seen, std::uint16_t sender, c
     }
     passing.owed = onward && !line.off && !line.deaf && net.sound && net.reliable <= 1 &&
                    net.src.pid == line.island && sure;
+    line.heard += onward && net.sound && net.src.pid == line.island ? 1 : 0;
     // The message may be on the serial line already, if the two taps' clocks differ.
     bool early = false;
     for (std::size_t i = 0; i < line.early.size(); ++i) {
@@ -159,6 +161,7 @@ void Forwarding::pass_up(Line& line, Passing& passing, const Observation& seen) 
     if (!format && !line.island_sure) severity = std::min(severity, Severity::kInconclusive);
     context_.report(passing.forbidden, severity, seen.place, line.sink, std::move(said));
   } else {
+    ++line.forwarded;
     context_.findings.kept("N6-CONTENT"_rule);
     context_.findings.kept("N6-ONCE"_rule);
     const bool own_island = passing.net.dest.pid == line.island;
@@ -568,12 +571,24 @@ void Forwarding::overdue_down(Line& line, std::int64_t now_us) {
   }
 }
 
+// Says that of many messages not one left on the line: nothing proves that any of them arrived.
+void Forwarding::forwards_nothing(const Line& line) {
+  const Passing& last = line.up.newest(0);
+  context_.report(
+      "N6-FORWARD"_rule, Severity::kInconclusive, last.place, line.sink,
+      {"Of the messages to its base station the sink has forwarded none, " + number(line.heard) +
+           " up to " + name_of(last.net) + "; nothing proves that one arrived.",
+       "Forwards of those that arrived.",
+       {}});
+}
+
 void Forwarding::finish(std::int64_t end_us) {
   for (Line& line : lines_) {
     // At its end a log of what the sink was given needs no sign of life.
     expire_early(line, end_us + context_.options.skew_us + 1);
     if (context_.device(line.sink).hearing && line.owed_up > 0) overdue_up(line, end_us);
     if (context_.device(line.sink).hearing && line.owed_down > 0) overdue_down(line, end_us);
+    if (line.serial && line.forwarded == 0 && line.heard >= kSilent) forwards_nothing(line);
     note_stale(context_, line.sink, "N6-CONTENT"_rule, line.stale,
                "On the serial line nbytes says ");
   }

@@ -108,11 +108,14 @@ class Forwarding {
     };
     Last last_up;
     Last last_down;
+    std::uint32_t heard = 0;      ///< Messages for its base station that it may have received.
+    std::uint32_t forwarded = 0;  ///< Messages that it passed on to its base station.
     std::uint32_t owed_up = 0;
     std::uint32_t owed_down = 0;
     Stale stale;  ///< On its serial line.
   };
 
+  void forwards_nothing(const Line& line);
   Line* find(std::uint16_t sink);
   void store(Ring<Passing, kRoom>& ring, const Passing& passing, std::uint32_t& owed);
   /// Returns whether the message is among these, `waiting`: not yet passed on.

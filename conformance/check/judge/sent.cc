@@ -94,10 +94,12 @@ void Originals::asks_to_join(std::uint16_t node) {
 // Only a log that has all that the node sends shows that a message never left.
 void Originals::ends(std::uint16_t node, std::int64_t end_us, const InterfaceWatch& interfaces) {
   const Device& device = context_.device(node);
-  if (!device.hearing || !context_.run.has_time) return;
+  const bool air = context_.options.sniffer_complete && context_.hears_radio;
+  if (!(device.hearing || air) || !context_.run.has_time) return;
   auto& calls = calls_[node];
   for (std::size_t i = 0; i < calls.size(); ++i) {
     const Call& one = calls.oldest(i);
+    if (!device.hearing && one.line != Link::kRadio) continue;
     if (!one.result && device.whole && end_us > context_.due_us(node, one.place.time_us)) {
       context_.report("N1-SEQ"_rule, Severity::kFail, one.place, node,
                       {"The call of send to " + text_of(one.send->dest) + " got no result.",
@@ -329,8 +331,9 @@ Originals::Asked Originals::judge_wrap(std::uint16_t node, const Observation& se
     return again ? Asked::kUnknown : Asked::kYes;
   }
   if ((calls.size() == 0 && !context_.device(node).whole) || calls.full()) return Asked::kUnknown;
-  // What was sent before the log began may have waited.
-  const bool whole = context_.options.start_cold || begun_[node];
+  // What was sent before the log began may have waited, and nobody knows what a log leaves out that
+  // is neither whole nor has what the node was given (decision 13).
+  const bool whole = context_.device(node).hearing && (context_.options.start_cold || begun_[node]);
   if (!asked) {
     context_.report(rule, whole ? Severity::kFail : Severity::kInconclusive, seen.place, node,
                     {"No call of its application asked for " + name_of(net) + ", reliable " +
@@ -572,7 +575,11 @@ void Originals::close(std::uint16_t node, std::size_t newest, std::int64_t now_u
   const std::int64_t waited = now_us - sent.place.time_us;
   const std::int64_t timeouts = context_.run.all_stated ? 1 : kTimeouts;
   if (waited <= timeouts * context_.ack_timeout_us() + 2 * response_us) return;
-  context_.report("T3-ONCE"_rule, Severity::kFail, sent.place, node,
+  context_.report("T3-ONCE"_rule,
+                  context_.ack_timeout_stated() || waited > kForever * context_.ack_timeout_us()
+                      ? Severity::kFail
+                      : Severity::kInconclusive,
+                  sent.place, node,
                   {"No receive_ack for " + name_of(sent.net) + " in " + ms_text(waited) + ".",
                    "receive_ack(failure) at the timeout, or receive_ack(success) before.",
                    {}});

@@ -65,7 +65,8 @@ class Originals {
 
  private:
   static constexpr std::size_t kRoom = 128;
-  static constexpr std::int64_t kTimeouts = 2;  ///< After so many stated ones there is no event.
+  static constexpr std::int64_t kTimeouts = 2;  ///< After so many assumed ones an event is missed.
+  static constexpr std::int64_t kForever = 5;   ///< And after so many there is none.
 
   struct Call {
     const machine::Send* send = nullptr;

@@ -81,7 +81,11 @@ void Originals::told(std::uint16_t node, const Observation& seen, const machine:
     const std::int64_t patience_us = kTimeouts * context_.ack_timeout_us() + context_.response_us();
     const bool forgotten =
         ring.full() && now - ring.newest(ring.size() - 1).place.time_us <= patience_us;
-    context_.report(ack.success ? "T3-SUCCESS"_rule : "T3-MATCH"_rule,
+    bool came = !ack.success;  // An ack of that number.
+    for (std::size_t i = 0; i < acks_[node].size(); ++i) {
+      came = came || acks_[node].newest(i).number == ack.seq_num;
+    }
+    context_.report(came ? "T3-MATCH"_rule : "T3-SUCCESS"_rule,
                     elsewhere || forgotten ? Severity::kInconclusive
                                            : context_.without(node, device.first_us, now),
                     seen.place, node,

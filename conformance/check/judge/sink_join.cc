@@ -254,6 +254,7 @@ void SinkJoins::close_unanswered(std::uint16_t mote_am, Unanswered& unanswered) 
   if (!sinks_.empty() && std::all_of(sinks_.begin(), sinks_.end(), hearing)) return;
   for (SinkWatch& sink : sinks_) {  // A sink that lists it is right not to answer.
     const PairWatch& watch = pair(sink, mote_am);
+    if (listed(sink) >= context_.profile().members_max) return;  // So is one that is full.
     const auto may_list = [](const SinkHypothesis& h) { return h.member.has_value(); };
     if (std::any_of(watch.set.begin(), watch.set.end(), may_list)) return;
   }
