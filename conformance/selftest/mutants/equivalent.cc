@@ -30,7 +30,6 @@ constexpr std::array kSurvivors{
     Survivor{"plus one: J6-REPORT * by serial: nbytes", kSerialNbytes},
     Survivor{"plus one: N6-OWN * by serial: nbytes", kSerialNbytes},
     Survivor{"plus one: N6-* rubicon_ack by serial: nbytes", kSerialNbytes},
-    Survivor{"plus one: N6-* synaptic_data by serial: nbytes", kSerialNbytes},
     Survivor{"* J6-REPORT net_msg serial_joined by serial: seq_num", kFreeNumber},
     Survivor{"* S*-* synaptic_data by radio: seq_num", kFreeNumber},
     Survivor{"* S*-* synaptic_data by serial: seq_num", kFreeNumber},
