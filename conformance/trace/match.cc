@@ -163,12 +163,15 @@ class Matcher {
     return same(want, leaf) != want.negated;
   }
 
-  // Matches a range that is relative to a variable; if that is unbound it never matches.
+  // Matches a range that is relative to a variable; if that is unbound it never matches. Behind a
+  // field's greatest number comes its least: clocks go round (decision 119).
   bool near(const Value& want, const Leaf& leaf) const {
     const Value* base = bindings_.find(want.text);
     if (!base || !base->is(Value::Kind::kNumber)) return false;
-    return same(Value::range(base->number + want.number, base->number + want.max), leaf) !=
-           want.negated;
+    if (leaf.domain.kind != Domain::Kind::kNumber) return want.negated;
+    const std::int64_t size = leaf.domain.max - leaf.domain.min + 1;
+    const std::int64_t beyond = (leaf.number - base->number - want.number) % size;
+    return ((beyond + size) % size <= want.max - want.number) != want.negated;
   }
 
   // The first use binds.

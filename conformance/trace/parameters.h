@@ -23,6 +23,7 @@ enum class ParameterId : std::uint8_t {
   kSynapticPeriod,
   kSynapticPhase,
   kGoneAfter,
+  kBuffers,
 };
 
 struct Parameter {

@@ -14,6 +14,7 @@
 #include "conformance/test/runner/blame.h"
 #include "conformance/test/runner/expectation.h"
 #include "conformance/test/runner/node_log.h"
+#include "conformance/test/runner/refusals.h"
 #include "conformance/trace/encode.h"
 #include "conformance/trace/events/lines.h"
 #include "conformance/trace/match.h"
@@ -331,6 +332,7 @@ class Run {
     while (true) {
       const Window wide = widened(node, timed);
       if (const Output* output = node.take(line, wide, bindings_)) {
+        refusals_.note(line, output->time, bindings_);
         matched(line, {output->time, 0});
         return true;
       }
@@ -427,6 +429,7 @@ class Run {
       // An output that differs broke the line when it came: what another line says of the same
       // output must not come first and take the blame.
       if (miss.time) result.failures.back().broken_at = *miss.time;
+      refusals_.blame(line, result.failures.back());
     }
     for (const Line* line : passed_over_) allowed_.push_back({line, {0, now_}, 0});
     for (const Timed& one : allowed_) {
@@ -528,6 +531,7 @@ class Run {
   std::vector<Stimulus> stimuli_;
   std::vector<Missing> missing_;
   Lost lost_;
+  Refusals refusals_;
   std::vector<const Line*> passed_over_;  // What may come, since they depend on what is lost.
   std::vector<Timed> forbidden_;
   std::vector<Timed> allowed_;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <string_view>
 
@@ -28,6 +29,32 @@ Rules rules_of(const CaseRun& one, bool blamed) {
     }
   }
   return out;
+}
+
+// Says of a role how little is left of its cases where what is stated rules most of them out.
+std::string ruled_out_most(const ImplementationRun& implementation) {
+  for (const machine::Role role : implementation.identity.roles) {
+    std::size_t all = 0;
+    std::map<std::string, std::size_t> out;  // By what is stated.
+    for (const CaseRun& one : implementation.cases) {
+      const bool plays = std::ranges::find(one.roles, role) != one.roles.end();
+      const bool asked = plays && (!one.foreign || !one.ruled_out.empty());
+      all += asked;
+      if (asked && !one.ruled_out.empty()) ++out[one.ruled_out];
+    }
+    std::size_t sum = 0;
+    std::string by;
+    for (const auto& [stated, cases] : out) {
+      sum += cases;
+      by += fmt::format("{}{} rules out {}", by.empty() ? "" : ", ", stated, cases);
+    }
+    if (2 * sum > all) {
+      return fmt::format("{} of {} of a {} could be tried: {}", all - sum,
+                         text::counted(all, "case"),
+                         trace::role_text(static_cast<trace::Role>(role)), by);
+    }
+  }
+  return {};
 }
 
 }  // namespace
@@ -68,6 +95,7 @@ std::string incomplete(const SuiteRun& run, const ImplementationRun& implementat
   const RuleTotals rules = rule_totals(implementation);
   const std::size_t rules_decided = rules.kept + rules.broken + rules.suspected;
   if (decided == 0) return "nothing was decided";
+  if (std::string most = ruled_out_most(implementation); !most.empty()) return most;
   if (owed > 0) {
     return fmt::format("{} {} neither decided nor listed with a reason",
                        text::counted(owed, "case"), owed == 1 ? "is" : "are");

@@ -41,6 +41,7 @@ struct CaseRun {
   /// Skipped, as it needs a role that the implementation does not play, or is for other values than
   /// it states.
   bool foreign = false;
+  std::string ruled_out;  ///< What is stated and keeps the case from being run: "members=8".
   /// It had to be decided and was not: the case is not foreign, and the file does not
   /// list it as skipped. No case at the own line of a node, which names what the line cannot show.
   bool owed = false;

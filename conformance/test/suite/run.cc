@@ -129,7 +129,13 @@ CaseRun run_one(const SuiteCase& one, targets::Attachment& attachment, const std
   if (seed && trace::set_seed_if_none(head, itself, *seed)) out.seed = *seed;
   try {
     std::string missing = missing_role(out, attachment.identity());
-    if (missing.empty()) missing = trace::state(head, itself, attachment.identity().stated);
+    if (missing.empty()) {
+      missing = trace::state(head, itself, attachment.identity().stated);
+      for (const trace::Stated& stated : attachment.identity().stated) {
+        const std::string text = trace::statement_text({stated});
+        if (missing.ends_with(" " + text + " is stated")) out.ruled_out = text;
+      }
+    }
     out.nodes = trace::scope_of(head, itself).nodes;
     if (missing.empty()) {
       out.result = runner::run_case(head, itself,

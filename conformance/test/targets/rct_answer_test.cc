@@ -197,7 +197,7 @@ TEST(RctAnswer, Hello) {
   EXPECT_NE(hello_wrong_with("hello rct/1 a 2 roles=mote time=warped"), "");
   const std::string known =
       "roles, time, links, response, join_period, join_requests, ack_joins, ack_timeout, "
-      "channel_access, members, channels, synaptic_period, synaptic_phase, gone_after";
+      "channel_access, members, channels, synaptic_period, synaptic_phase, gone_after, buffers";
   EXPECT_EQ(hello_wrong_with("hello rct/1 a 2 roles=mote fast"),
             "'fast' is not key=value, such as roles=mote; known are " + known);
   EXPECT_NE(hello_wrong_with("hello rct/1 a 2 roles=mote =fast"), "");

@@ -51,6 +51,7 @@ void visit(AnyProfile& profile, ParameterId id, Call call) {
     case ParameterId::kSynapticPeriod: return call(profile.synaptic_period_ticks);
     case ParameterId::kSynapticPhase: return call(profile.synaptic_phase_ticks);
     case ParameterId::kGoneAfter: return call(profile.gone_after_ticks);
+    case ParameterId::kBuffers: return;  // The machine has those of Table 1.
   }
 }
 
@@ -383,7 +384,7 @@ std::vector<Line> emitted_lines(std::int64_t now, const NodeNames& names,
 }
 
 std::int64_t value_of(const machine::Profile& profile, ParameterId id) {
-  std::int64_t out = 0;
+  std::int64_t out = trace::parameter(id).unstated;
   visit(profile, id, [&](auto value) { out = value; });
   return out;
 }

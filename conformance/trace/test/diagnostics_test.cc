@@ -17,7 +17,7 @@ struct Wrong {
 
 #define KNOWN                                                        \
   "join_requests, ack_joins, ack_timeout, channel_access, members, " \
-  "channels, synaptic_period, synaptic_phase, gone_after"
+  "channels, synaptic_period, synaptic_phase, gone_after, buffers"
 
 constexpr const char* kAbove =
     "%rtr 1   %profile paper\n"

@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include <array>
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -59,6 +60,27 @@ std::string reach_text(const ImplementationRun& implementation, const TextOption
                              "(conformance/PORTING.md; --app shows more of a node at its line).",
                              played - beyond, counted(played, "case"), fmt::join(unseen, ", ")),
                  options.width);
+}
+
+// Says how many cases what is stated leaves.
+std::string stated_text(const ImplementationRun& implementation, const TextOptions& options) {
+  std::size_t played = 0;
+  std::map<std::string, std::size_t> ruled_out;
+  for (const CaseRun& one : implementation.cases) {
+    if (!one.ruled_out.empty()) ++ruled_out[one.ruled_out];
+    played += !one.foreign || !one.ruled_out.empty();
+  }
+  if (ruled_out.empty()) return {};
+  std::size_t left = played;
+  std::string by;
+  for (const auto& [stated, cases] : ruled_out) {
+    left -= cases;
+    by += fmt::format("{}{} rules out {}", by.empty() ? "" : ", ", stated, cases);
+  }
+  return wrapped(
+      kIndent,
+      fmt::format("What is stated leaves {} of {}: {}.", left, counted(played, "case"), by),
+      options.width);
 }
 
 // Describes faults that happened between cases.
@@ -139,6 +161,7 @@ std::string totals_text(const SuiteRun& run, const ImplementationRun& implementa
   const std::string missing = incomplete(run, implementation);
   if (!missing.empty())
     out += wrapped(fmt::format("{}Incomplete: ", kIndent), missing + '.', options.width);
+  out += stated_text(implementation, options);
   out += reach_text(implementation, options);
   out += outside(implementation, options);
   out += rules_line(implementation, "Broken", options,

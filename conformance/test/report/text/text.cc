@@ -182,6 +182,9 @@ std::string rule_text(const Failure& failure, const TextOptions& options) {
 
 std::string failure_text(const CaseRun& one, const Failure& failure, const TextOptions& options) {
   std::string out = rule_text(failure, options);
+  if (failure.requirements.empty() && !failure.expected.empty()) {
+    out += field("Rule:", "none; the set-up of this case, which cannot go on without it.", options);
+  }
   if (!failure.expected.empty()) {
     out += field(failure.forbidden ? "Forbids:" : "Asks for:", failure.expected, options);
     out += field("",
