@@ -67,7 +67,8 @@ inline void Node::leave(Message& message) {
   if (message.type() == kAmJoin) join_.due = now_ + kJoinPeriodTicks + slack_;
   if (message.type() != kAmNet) return;
   const auto view = rubicon::NetMsgView::parse(message.payload());
-  if (view && address_of(view->src()) == address())
+  // Its island may have become another one since it waits.
+  if (view && address_of(view->src()).devid == address().devid)
     awaiting_.left(view->seq_num(), now_ + kAckTimeoutTicks + slack_);
 }
 

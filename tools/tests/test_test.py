@@ -116,7 +116,7 @@ class Running(Folder):
         self.assertEqual(code, 1)
         self.assertIn(f"line 5 of {trace}", out)
         self.assertIn(f"--cases own.clock {trace}\n", out)
-        self.assertIn("\nFAIL own.clock\n  Asks for:", out)
+        self.assertIn("\nFAIL own.clock\n  Rule:     none; the set-up of this case", out)
         # A line of the list is whole where nobody said how wide it may be.
         trace.write_text(trace.read_text().replace("0..50", "2147483000..2147483648"))
         code, out, _ = test("--target", "machine", trace)

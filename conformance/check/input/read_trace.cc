@@ -146,12 +146,18 @@ class LogReader {
     const std::optional<LinkKind> kind = scope_.link(line.link);
     if ((!busy && line.message.name != "idle") || !kind) return;
     const std::optional<machine::Link> link = events::to_link(*kind);
+    end_busy(line.node, link, time_us);
     for (LoggedNode& node : run_.nodes) {
-      if (node.name != line.node) continue;
+      if (node.name == line.node && busy) node.busy.push_back({time_us, INT64_MAX, link});
+    }
+  }
+
+  // Ends what is still busy of a node: a line, or its application.
+  void end_busy(std::string_view name, std::optional<machine::Link> line, std::int64_t time_us) {
+    for (LoggedNode& node : run_.nodes) {
       for (BusyTime& one : node.busy) {
-        if (one.line == link) one.to_us = std::min(one.to_us, time_us);
+        if (node.name == name && one.line == line) one.to_us = std::min(one.to_us, time_us);
       }
-      if (busy) node.busy.push_back({time_us, INT64_MAX, link});
     }
   }
 
@@ -205,6 +211,7 @@ class LogReader {
       if (!reboot && !std::holds_alternative<machine::PowerOff>(*state)) return;
       if (reboot) without_power_.erase(line.node);
       if (!reboot) without_power_.insert(line.node);
+      end_busy(line.node, std::nullopt, seen.place.time_us);  // The application begins anew.
       seen.kind = Observation::Kind::kReboot;
       seen.received = false;
     } else if (const auto call = events::to_call(*message); call && seen.received) {

@@ -292,8 +292,9 @@ ReqId MoteJoins::why_not_ack(const MoteHypothesis& h, const Observation& seen,
   if (h.join.phase != Phase::kMember) return "J4-JOINED"_rule;
   AckJoin want = expected_ack(h);
   // If the call began before the capture only a part of it is known.
-  if (h.join.seq_num == 0) want.seq_num = ack.seq_num, want.descriptor = ack.descriptor;
-  if (h.join.seq_num == 0 || h.join.sink_devid == 0) want.dest = ack.dest;
+  const bool before = h.join.seq_num == 0 && h.join.descriptor == machine::Descriptor{};
+  if (before) want.seq_num = ack.seq_num, want.descriptor = ack.descriptor;
+  if (before || h.join.sink_devid == 0) want.dest = ack.dest;
   if (ack != want) {
     return ack.dest.pid != want.dest.pid && ack.seq_num == want.seq_num ? "J7-CHOICE"_rule
                                                                         : "J4-CONTENT"_rule;

@@ -48,8 +48,10 @@ std::uint16_t SinkJoins::island(std::uint16_t sink) const {
 bool SinkJoins::is_own(std::uint16_t sink, machine::Address address, std::int64_t now_us) const {
   if (address.devid != context_.device(sink).am) return false;
   const auto its = [&](const SinkWatch& watch) {
-    const bool former = watch.former_island != 0 && address.pid == watch.former_island &&
-                        now_us <= context_.due_us(sink, watch.island_set_us);
+    // Of one that is told its island first of all nobody knows which one it had.
+    const bool may = watch.former_island == 0 || address.pid == watch.former_island;
+    const bool former =
+        watch.island_set && may && now_us <= context_.due_us(sink, watch.island_set_us);
     return watch.device == sink && (address.pid == watch.island || former);
   };
   return std::ranges::any_of(sinks_, its);
@@ -90,6 +92,7 @@ void SinkJoins::set_island(std::uint16_t sink, std::uint16_t island, const Place
       if (surely_lists(pair)) pair.set.insert(pair.set.begin(), forgotten);
     }
     watch->island_set = true;
+    watch->island_set_us = at.time_us;
     watch->island_sure = watch->island_sure || sure;
     return;
   }

@@ -60,6 +60,7 @@ Report judge_text(const std::string& text) {
   EXPECT_TRUE(reader.add_bytes("counterexample.rtr", text, error)) << error;
   Options options;
   options.sniffer_complete = options.start_cold = true;
+  options.ack_timeout_us = machine::us_of(machine::Profile{}.ack_timeout_ticks);  // That of all.
   return judge(reader.finish(), options);
 }
 
