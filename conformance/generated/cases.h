@@ -17,7 +17,7 @@ struct CaseUse {
 };
 
 /// By file, then as they stand there; each case once for a rule and a sign.
-inline constexpr std::array<CaseUse, 2170> kCaseUses{{
+inline constexpr std::array<CaseUse, 2180> kCaseUses{{
     {"after_set_island.base_station",
      "conformance/cases/after_set_island.rtr", "N9-SET"_rule, false},
     {"after_set_island.base_station",
@@ -603,7 +603,17 @@ inline constexpr std::array<CaseUse, 2170> kCaseUses{{
     {"leaving.sink", "conformance/cases/leaving.rtr", "J3-REPLY"_rule, false},
     {"leaving.sink", "conformance/cases/leaving.rtr", "J6-ADD"_rule, false},
     {"leaving.sink", "conformance/cases/leaving.rtr", "J2-LISTED"_rule, true},
+    {"leaving.one_of_two", "conformance/cases/leaving.rtr", "J3-REPLY"_rule, false},
+    {"leaving.one_of_two", "conformance/cases/leaving.rtr", "J6-ADD"_rule, false},
+    {"leaving.one_of_two", "conformance/cases/leaving.rtr", "J2-LISTED"_rule, true},
+    {"leaving.owed", "conformance/cases/leaving.rtr", "J3-REPLY"_rule, false},
+    {"leaving.owed", "conformance/cases/leaving.rtr", "J6-REPORT"_rule, false},
+    {"leaving.owed", "conformance/cases/leaving.rtr", "J6-ADD"_rule, false},
+    {"leaving.owed", "conformance/cases/leaving.rtr", "J2-LISTED"_rule, true},
+    {"leaving.islands", "conformance/cases/leaving.rtr", "J3-REPLY"_rule, false},
+    {"leaving.islands", "conformance/cases/leaving.rtr", "J6-ADD"_rule, false},
     {"leaving.base_station", "conformance/cases/leaving.rtr", "T1-DELIVER"_rule, false},
+    {"leaving.many", "conformance/cases/leaving.rtr", "T1-DELIVER"_rule, false},
     {"leaving.never", "conformance/cases/leaving.rtr", "J3-REPLY"_rule, false},
     {"leaving.never", "conformance/cases/leaving.rtr", "J6-ADD"_rule, false},
     {"leaving.never", "conformance/cases/leaving.rtr", "J2-LISTED"_rule, true},

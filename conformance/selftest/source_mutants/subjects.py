@@ -21,12 +21,14 @@ class Subject:
 
 
 SUBJECTS = {
-    # hash.cc tells the explorer's states apart; ticks.h converts times for captures.
+    # hash.cc tells the explorer's states apart; ticks.h converts times for captures; what event.h
+    # calls a result is for the fuzz targets' watch and `rubric run`.
     "machine": Subject("conformance/machine", ("*.cc", "*.h"),
-                       ("hash.cc", "ticks.h", "machine_bench.cc"), scope="rubric::machine"),
+                       ("hash.cc", "ticks.h", "event.h", "machine_bench.cc"),
+                       scope="rubric::machine"),
     # serial_port.h is the serial stack of boards, below what rct/1 sees; the others are sizes.
     "cpp": Subject("conformance/node", ("*.h",), ("serial_port.h", "memory.h", "sizes.h"),
-                   unit="node.h",
+                   unit="silence.h",
                    scope="rubric::node"),
     "python": Subject("conformance/adapters/python", ("*.py",), as_it_is=("adapter.py", "words.py"),
                       language="python"),

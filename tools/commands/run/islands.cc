@@ -22,6 +22,7 @@
 #include "tools/commands/run/station.h"
 #include "tools/commands/space/gateway.h"
 #include "tools/commands/space/memory_space.h"
+#include "tools/commands/space/mqtt_space.h"
 #include "tools/commands/space/space_url.h"
 
 namespace rubric::run {

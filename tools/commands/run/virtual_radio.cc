@@ -84,10 +84,12 @@ void VirtualRadio::put(Bytes frame, std::int64_t time_ns) {
 }
 
 void VirtualRadio::begin() {
-  // A radio sends when its wait is over, however late a busy computer lets this process run.
+  // A radio sends when its wait is over, however late a busy computer lets this process run; but
+  // not before what it has heard, since others then had that first.
   const std::chrono::nanoseconds late = steady_clock::now() - std::max(next_, taken_);
   const std::int64_t late_ns = std::min<std::int64_t>(late.count(), kLateMostNs);
-  put(Bytes(frame_.data(), frame_.size()), wall_ns() - late_ns);
+  const std::int64_t now_ns = wall_ns();
+  put(Bytes(frame_.data(), frame_.size()), std::clamp(heard_ns_, now_ns - late_ns, now_ns));
   if (!link_ack_) return finish(false);
   state_ = State::kAwaitingAck;
   next_ = taken_ = steady_clock::now() + kAckWait;
@@ -105,6 +107,10 @@ void VirtualRadio::handle(Bytes datagram) {
   const std::vector<std::uint8_t> kept(packet.bytes.begin(), packet.bytes.end());
   packet.bytes = Bytes(kept.data(), kept.size());
   user_.on_air(packet);
+  // A frame is heard at its end, which is also the earliest time of what it causes.
+  const std::int64_t end_ns =
+      packet.time_ns + static_cast<std::int64_t>(kept.size() + kPreambleAndFcs) * kByteNs;
+  heard_ns_ = end_ns;
   if (packet.error.fault != Fault::kNone) return;
   const bool lost = std::bernoulli_distribution(settings_.loss)(random_);
   if (kept.size() < kAckBytes) return;
@@ -124,9 +130,6 @@ void VirtualRadio::handle(Bytes datagram) {
   const std::uint16_t dest = Mac::DestAt::load(kept.data());
   if (src == settings_.address) user_.twin();
   if (lost || !user_.listens() || (dest != settings_.address && dest != kAll)) return;
-  // A frame is heard at its end, which is also the earliest time of what it causes.
-  const std::int64_t end_ns =
-      packet.time_ns + static_cast<std::int64_t>(kept.size() + kPreambleAndFcs) * kByteNs;
   if (asks && dest != kAll) {
     tinyos::MacAck ack;
     ack.fcf = reflect::fcf_of(FrameControl::kAck);
@@ -157,6 +160,8 @@ void VirtualRadio::run(lines::SteadyTime deadline, const lines::Air::Others& oth
   const Bytes datagram = air_.receive(until, others);
   if (!datagram.empty()) handle(datagram);
   const auto now = steady_clock::now();
+  // What came while this process could not run is heard first.
+  if (!datagram.empty() && now < next_ + std::chrono::nanoseconds(kLateMostNs)) return;
   if (state_ == State::kIdle || now < next_) return;
   if (state_ == State::kAwaitingAck) return finish(false);
   if (now < taken_) {

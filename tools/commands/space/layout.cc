@@ -219,10 +219,9 @@ std::optional<Key> parse_key(std::string_view key) {
 }
 
 string time_text(std::int64_t ms) {
-  const std::chrono::system_clock::time_point at{std::chrono::milliseconds(ms)};
-  return fmt::format("{:%Y-%m-%dT%H:%M:%S}.{:03}Z",
-                     fmt::gmtime(std::chrono::system_clock::to_time_t(
-                         std::chrono::floor<std::chrono::seconds>(at))),
+  // Not by the system's clock, whose nanoseconds end in the year 2262.
+  const auto at = std::chrono::floor<std::chrono::seconds>(std::chrono::milliseconds(ms));
+  return fmt::format("{:%Y-%m-%dT%H:%M:%S}.{:03}Z", fmt::gmtime(std::time_t{at.count()}),
                      ms % 1000);
 }
 
