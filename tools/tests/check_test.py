@@ -437,6 +437,16 @@ class Inputs(Folder):
         hex_frames = self.write("air.hex", "41881d220001000200 04 c4f5 01 0007 0001\n")
         self.assertEqual(as_json("--input-format", "hex-radio", hex_frames)["counts"]["frames"], 1)
 
+    def test_application_log_beside_its_capture(self):
+        air, log = self.folder / "air.pcapng", self.folder / "run.rtr"
+        rubric("simulate", "--scenario", "open_door", "--out-pcapng", air, "--out-rtr", log)
+        lines = [line for line in log.read_text().splitlines()
+                 if not line.lstrip().startswith("@") or re.search(r"[<>] +app ", line)]
+        app = self.write("app.rtr", "\n".join(lines) + "\n")
+        code, out, err = check(air, app, "--sniffer", "complete", "--start", "cold")
+        self.assertEqual((code, err), (0, ""), out)
+        self.assertIn("application log", out)
+
     def test_testers_are_not_judged(self):
         self.assertEqual(as_json(WRONG_SEQ, "--tester", "2")["counts"]["fail"], 0)
 
