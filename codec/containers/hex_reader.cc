@@ -157,6 +157,8 @@ std::uint16_t link_type_of(const ReaderOptions& options) {
 std::size_t stamp_size(Bytes line) {
   const std::string_view text(reinterpret_cast<const char*>(line.data()), line.size());
   const std::size_t begin = after_blanks(text, 0);
+  const std::string_view first = word_of(text.substr(begin));
+  if (first.size() == 2 && is_hex_digit(static_cast<std::uint8_t>(first[0]))) return 0;  // A byte.
   std::size_t end = stamp_end(text.substr(begin, kStampMost));
   if (end == 0 && begins_with_epoch(text.substr(begin))) end = word_of(text.substr(begin)).size();
   std::size_t next = begin;
