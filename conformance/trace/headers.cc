@@ -31,11 +31,11 @@ std::int64_t motes_joined(const Case& one) {
   return static_cast<std::int64_t>(sources.size());
 }
 
-std::string contradiction(const StatedRange& wanted, const Stated& stated) {
+Contradiction contradiction(const StatedRange& wanted, const Stated& stated) {
   if (wanted.id != stated.id) return {};
   if (wanted.least <= stated.value && stated.value <= wanted.most) return {};
-  return "the case is for " + range_text(wanted) + ", and " + statement_text({stated}) +
-         " is stated";
+  const std::string text = statement_text({stated});
+  return {"the case is for " + range_text(wanted) + ", and " + text + " is stated", text};
 }
 
 // Returns a number of ticks which the case does not outlast.
@@ -56,8 +56,8 @@ std::int64_t longest(const Case& one, const Statement& statement) {
 }
 
 // Returns what one node contradicts.
-std::string contradiction(const Case& one, const NodeHeader& node, const Stated& stated,
-                          const Statement& statement) {
+Contradiction contradiction(const Case& one, const NodeHeader& node, const Stated& stated,
+                            const Statement& statement) {
   if (const std::int64_t* const said = find(node.stated, stated.id)) {
     return contradiction({stated.id, *said, *said}, stated);
   }
@@ -76,8 +76,8 @@ std::string contradiction(const Case& one, const NodeHeader& node, const Stated&
 
 }  // namespace
 
-std::string state(File& file, Case& one, const Statement& statement) {
-  std::string wrong;
+Contradiction state(File& file, Case& one, const Statement& statement) {
+  Contradiction wrong;
   for (const std::vector<Item>* items : {&file.head, &one.items}) {
     for (const Item& item : *items) {
       const auto* const header = item.as<Header>();
@@ -85,7 +85,7 @@ std::string state(File& file, Case& one, const Statement& statement) {
       if (!wanted) continue;
       for (const StatedRange& range : wanted->values) {
         for (const Stated& each : statement) {
-          if (wrong.empty()) wrong = contradiction(range, each);
+          if (wrong.text.empty()) wrong = contradiction(range, each);
         }
       }
     }
@@ -95,7 +95,7 @@ std::string state(File& file, Case& one, const Statement& statement) {
     auto* const node = header ? std::get_if<NodeHeader>(&header->what) : nullptr;
     if (!node || !node->iut) continue;
     for (const Stated& each : statement) {
-      if (wrong.empty()) wrong = contradiction(one, *node, each, statement);
+      if (wrong.text.empty()) wrong = contradiction(one, *node, each, statement);
     }
     node->stated = joined(std::move(node->stated), statement);
     if (protocol().has_machine && node->role == Role::kBaseStation) {  // It has no channels.

@@ -46,10 +46,15 @@ inline bool set_seed_if_none(File& file, const Case& one, std::uint64_t seed) {
   return true;
 }
 
-/// Makes the nodes under test of a case state these, too. Returns what contradicts: a node of which
-/// the trace states something else ("the case is for members=20, and members=8 is stated"); or
-/// nothing. A case that creates more channels than are stated contradicts, too, as
-/// does one in which more motes join than a sink lists.
-std::string state(File& file, Case& one, const Statement& statement);
+/// What keeps a case from being run with a statement.
+struct Contradiction {
+  std::string text;    ///< "the case is for members=20, and members=8 is stated"; empty: nothing.
+  std::string stated;  ///< "members=8".
+};
+
+/// Makes the nodes under test of a case state these, too. Returns what contradicts first: a node of
+/// which the trace states something else; or nothing. A case that creates more channels than are
+/// stated contradicts, too, as does one in which more motes join than a sink lists.
+Contradiction state(File& file, Case& one, const Statement& statement);
 
 }  // namespace rubric::trace

@@ -89,7 +89,7 @@ CaseResult run(const CaseRef& ref, const runner::SubjectFactory& make,
   file.file.head = ref.file->file.head;
   trace::Case one = *ref.one;
   CaseResult result;
-  result.reason = trace::state(file.file, one, stated);
+  result.reason = trace::state(file.file, one, stated).text;
   if (result.reason.empty()) return run({&file, &one}, make);
   result.verdict = CaseVerdict::kSkip;
   return result;

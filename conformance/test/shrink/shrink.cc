@@ -261,7 +261,7 @@ CaseResult play(const trace::File& file, const Player& player) {
     trace::set_header(asked, asked.cases.at(0), trace::ProfileHeader{player.profile});
   }
   CaseResult result;
-  result.reason = trace::state(asked, asked.cases.at(0), player.stated);
+  result.reason = trace::state(asked, asked.cases.at(0), player.stated).text;
   if (result.reason.empty()) return runner::run_case(asked, asked.cases.at(0), player.make);
   result.verdict = CaseVerdict::kSkip;
   return result;

@@ -34,25 +34,11 @@ Rules rules_of(const CaseRun& one, bool blamed) {
 // Says of a role how little is left of its cases where what is stated rules most of them out.
 std::string ruled_out_most(const ImplementationRun& implementation) {
   for (const machine::Role role : implementation.identity.roles) {
-    std::size_t all = 0;
-    std::map<std::string, std::size_t> out;  // By what is stated.
-    for (const CaseRun& one : implementation.cases) {
-      const bool plays = std::ranges::find(one.roles, role) != one.roles.end();
-      const bool asked = plays && (!one.foreign || !one.ruled_out.empty());
-      all += asked;
-      if (asked && !one.ruled_out.empty()) ++out[one.ruled_out];
-    }
-    std::size_t sum = 0;
-    std::string by;
-    for (const auto& [stated, cases] : out) {
-      sum += cases;
-      by += fmt::format("{}{} rules out {}", by.empty() ? "" : ", ", stated, cases);
-    }
-    if (2 * sum > all) {
-      return fmt::format("{} of {} of a {} could be tried: {}", all - sum,
-                         text::counted(all, "case"),
-                         trace::role_text(static_cast<trace::Role>(role)), by);
-    }
+    const RuledOut out = ruled_out(implementation, role);
+    if (2 * out.left >= out.all) continue;
+    return fmt::format("{} of {} of a {} could be tried: {}", out.left,
+                       text::counted(out.all, "case"),
+                       trace::role_text(static_cast<trace::Role>(role)), out.by);
   }
   return {};
 }
@@ -83,6 +69,22 @@ int exit_code(const SuiteRun& run) {
     complete = complete && incomplete(run, implementation).empty();
   }
   return broke ? 2 : failed ? 1 : complete ? 0 : 3;
+}
+
+RuledOut ruled_out(const ImplementationRun& implementation, std::optional<machine::Role> role) {
+  RuledOut out;
+  std::map<std::string, std::size_t> cases_of;  // By what is stated.
+  for (const CaseRun& one : implementation.cases) {
+    if (role && std::ranges::find(one.roles, *role) == one.roles.end()) continue;
+    if (one.foreign && one.ruled_out.empty()) continue;
+    ++out.all;
+    if (one.ruled_out.empty()) ++out.left;
+    if (!one.ruled_out.empty()) ++cases_of[one.ruled_out];
+  }
+  for (const auto& [stated, cases] : cases_of) {
+    out.by += fmt::format("{}{} rules out {}", out.by.empty() ? "" : ", ", stated, cases);
+  }
+  return out;
 }
 
 std::string incomplete(const SuiteRun& run, const ImplementationRun& implementation) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -94,6 +95,16 @@ struct SuiteRun {
   std::vector<StaleExpectation> stale;
   std::size_t rules_required = 0;  ///< That each implementation has to decide.
 };
+
+/// What statements leave of an implementation's cases.
+struct RuledOut {
+  std::size_t left = 0;
+  std::size_t all = 0;
+  std::string by;  ///< "members=8 rules out 3, gone_after=3000 rules out 246"; empty: nothing does.
+};
+/// Counts the cases of a role, or all that it could play.
+RuledOut ruled_out(const ImplementationRun& implementation,
+                   std::optional<machine::Role> role = std::nullopt);
 
 /// Returns 0 as expected, 1 for an unexpected failure or an expectation that does not hold, 2 for
 /// an error, a dishonest implementation, or one that broke between cases, and 3 if it is

@@ -130,11 +130,9 @@ CaseRun run_one(const SuiteCase& one, targets::Attachment& attachment, const std
   try {
     std::string missing = missing_role(out, attachment.identity());
     if (missing.empty()) {
-      missing = trace::state(head, itself, attachment.identity().stated);
-      for (const trace::Stated& stated : attachment.identity().stated) {
-        const std::string text = trace::statement_text({stated});
-        if (missing.ends_with(" " + text + " is stated")) out.ruled_out = text;
-      }
+      const trace::Contradiction wrong = trace::state(head, itself, attachment.identity().stated);
+      missing = wrong.text;
+      out.ruled_out = wrong.stated;
     }
     out.nodes = trace::scope_of(head, itself).nodes;
     if (missing.empty()) {

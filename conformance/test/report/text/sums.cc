@@ -3,7 +3,6 @@
 #include <fmt/ranges.h>
 
 #include <array>
-#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -64,23 +63,12 @@ std::string reach_text(const ImplementationRun& implementation, const TextOption
 
 // Says how many cases what is stated leaves.
 std::string stated_text(const ImplementationRun& implementation, const TextOptions& options) {
-  std::size_t played = 0;
-  std::map<std::string, std::size_t> ruled_out;
-  for (const CaseRun& one : implementation.cases) {
-    if (!one.ruled_out.empty()) ++ruled_out[one.ruled_out];
-    played += !one.foreign || !one.ruled_out.empty();
-  }
-  if (ruled_out.empty()) return {};
-  std::size_t left = played;
-  std::string by;
-  for (const auto& [stated, cases] : ruled_out) {
-    left -= cases;
-    by += fmt::format("{}{} rules out {}", by.empty() ? "" : ", ", stated, cases);
-  }
-  return wrapped(
-      kIndent,
-      fmt::format("What is stated leaves {} of {}: {}.", left, counted(played, "case"), by),
-      options.width);
+  const RuledOut out = ruled_out(implementation);
+  if (out.by.empty()) return {};
+  return wrapped(kIndent,
+                 fmt::format("What is stated leaves {} of {}: {}.", out.left,
+                             counted(out.all, "case"), out.by),
+                 options.width);
 }
 
 // Describes faults that happened between cases.
