@@ -330,7 +330,7 @@ class Identifier {
         sink = add(device);
       }
       const bool logs = owner != logged_sink_.end();
-      // What it sent by radio may all be of the time after its base station set its island.
+      // Perhaps it was heard by radio only after its base station had set its island.
       Device& its_sink = out_.devices[sink];
       if (!logs && line.first != 0 && its_sink.island == line.island) its_sink.island = line.first;
       const std::uint16_t said = logs ? out_.devices[sink].island : std::uint16_t{0};

@@ -134,7 +134,7 @@ Run in_one_order(Run run, const AlignOptions& options, std::optional<std::int64_
   if (logged) {  // It takes time to walk through a large capture.
     for (Observation& seen : run.seen) {
       if (!seen.node.empty()) seen.place.time_us += logs_us;
-      // A log counts whole ticks: what the application is told came within the one that is written.
+      // A log counts whole ticks: an event happened within the tick that is written.
       if (captured && seen.kind == Observation::Kind::kNotice)
         seen.place.time_us += machine::us_of(1);
       if (seen.place.time_us != kNoStamp) first_us = std::min(first_us, seen.place.time_us);

@@ -77,6 +77,8 @@ struct Context {
 
   std::int64_t early_us() const { return machine::us_of(profile().early_ticks); }
   std::int64_t join_period_us() const { return machine::us_of(profile().join_period_ticks); }
+  /// Returns how long a joinIsland call takes that sends all its requests.
+  std::int64_t join_call_us() const { return profile().join_requests_max * join_period_us(); }
   std::int64_t response_us() const {
     return options.response_us.value_or(machine::us_of(profile().response_ticks)) + run.slack_us;
   }

@@ -11,7 +11,7 @@ using machine::Link;
 using machine::Role;
 using machine::Route;
 
-constexpr std::uint32_t kSilent = 3;  // So many messages of which none is forwarded are no chance.
+constexpr std::uint32_t kSilent = 3;  // That none of so many messages is forwarded is no chance.
 constexpr std::int64_t kStartUs = 5'000'000;  // A buffer may hold older frames until then.
 
 // On the serial line nbytes and the bytes after the payload may differ (N6-CONTENT).
@@ -588,7 +588,8 @@ void Forwarding::finish(std::int64_t end_us) {
     expire_early(line, end_us + context_.options.skew_us + 1);
     if (context_.device(line.sink).hearing && line.owed_up > 0) overdue_up(line, end_us);
     if (context_.device(line.sink).hearing && line.owed_down > 0) overdue_down(line, end_us);
-    if (line.serial && line.forwarded == 0 && line.heard >= kSilent) forwards_nothing(line);
+    const bool silent = line.forwarded == 0 && line.heard >= kSilent;
+    if (line.serial && silent && line.up.size() > 0) forwards_nothing(line);
     note_stale(context_, line.sink, "N6-CONTENT"_rule, line.stale,
                "On the serial line nbytes says ");
   }

@@ -67,12 +67,12 @@ class Forwarding {
   void somebody_sent(const Net& net);
   /// Notes that by a log the sink was given a message that its host sent before.
   void surely_down(std::uint16_t sink, const Net& net, std::int64_t now_us);
-  /// Sets the sink's island from now on.
   /// Returns whether a message of the sink's own has all but the source of one that it heard and
   /// has not forwarded yet.
   bool alters_up(std::uint16_t sink, const Net& net);
   /// Notes that another message left on the sink's serial line.
   void went_up(std::uint16_t sink, std::int64_t now_us);
+  /// Sets the sink's island from now on.
   void set_island(std::uint16_t sink, std::uint16_t island, std::int64_t now_us, bool sure);
   void begin_life(std::uint16_t sink);
   /// Judges what the sink owes, by a log that has all that it does until then.

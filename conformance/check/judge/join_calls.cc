@@ -233,8 +233,8 @@ void JoinCalls::told(std::uint16_t mote, const Observation& seen, const machine:
   context_.report("J8-FAIL"_rule, Severity::kFail, seen.place, mote, std::move(said));
 }
 
-// Returns whether, by a whole log, a success is told later than in a golden trace, whichever state
-// of `set` the mote was in; and reports it.
+// Reports a success that by a whole log is told later than in a golden trace, whichever state of
+// `set` the mote was in. Returns whether it was.
 bool JoinCalls::judge_late(std::uint16_t mote, const Observation& seen,
                            const std::vector<MoteHypothesis>& set) {
   if (!context_.device(mote).whole || !context_.run.has_time || set.empty()) return false;
@@ -296,7 +296,7 @@ std::int64_t JoinCalls::last_expiry_us(std::uint16_t mote, const MoteHypothesis&
   const std::int64_t left = std::max<std::int64_t>(0, requests - h.join.requests);
   const std::int64_t latest_us =
       h.first_request_us + requests * (period_us + context_.response_us());
-  std::int64_t over_us = std::max(h.first_request_us + requests * period_us,
+  std::int64_t over_us = std::max(h.first_request_us + context_.join_call_us(),
                                   std::min(latest_us, h.last_request_us + (left + 1) * period_us)) +
                          calls_[mote].off_us;
   for (const BusyTime& busy : context_.busy_times(mote)) {
@@ -336,8 +336,7 @@ void JoinCalls::finish(std::int64_t end_us) {
     const MoteHypothesis& h = set[0];
     if (h.join.phase == Phase::kMember) judge_member(mote, h, end_us);
     if (h.join.phase != Phase::kJoining) continue;
-    const std::int64_t calls_us = context_.profile().join_requests_max * context_.join_period_us();
-    if (end_us <= h.first_request_us + calls_us + context_.response_us()) continue;
+    if (end_us <= h.first_request_us + context_.join_call_us() + context_.response_us()) continue;
     if (h.first_request_us < 0) continue;                         // The begin is unknown.
     if (calls_[mote].logged && calls_[mote].open == 0) continue;  // It had its event.
     Place at;

@@ -85,8 +85,7 @@ void JoinWatch::asks_again(std::uint16_t mote, std::uint16_t seq_num, std::int64
 
 // A late answer is legal (decision 125): it is missing once the mote's call is over.
 void JoinWatch::hears_on(std::uint16_t sink, std::int64_t now_us) {
-  const std::int64_t call_us = context_.profile().join_requests_max * context_.join_period_us();
-  if (!context_.device(sink).hearing) settle(sink, now_us - call_us, false);
+  if (!context_.device(sink).hearing) settle(sink, now_us - context_.join_call_us(), false);
 }
 
 void JoinWatch::surely_asked(std::uint16_t sink, std::uint32_t index, std::uint16_t seq_num) {

@@ -510,19 +510,18 @@ void Judge::whole(const Observation& seen, std::uint16_t sender) {
 void Judge::up_serial(const Observation& seen, const Mark& mark, std::uint16_t sink,
                       const Net& net) {
   SerialJoined joined;
+  const bool passes = forwarding_.came_up(sink, net);
   // What an application sends may look like one.
-  if (!forwarding_.came_up(sink, net) && !originals_.asked(sink, net) &&
-      parse_serial_joined(net, joined)) {
+  if (!passes && !originals_.asked(sink, net) && parse_serial_joined(net, joined)) {
     announcements_.report(sink, seen, net, joined);
     island_shown(sink, seen.place.time_us);
   } else if (sinks_.is_own(sink, net.src, seen.place.time_us) &&
              !forwarding_.alters_up(sink, net)) {
     own_message(sink, seen, net, machine::Link::kSerial, net.src);
     forwarding_.went_up(sink, seen.place.time_us);
-  } else if (forwarding_.came_up(sink, net) ||
-             !forged(sink, seen, net, machine::Link::kSerial, address_of(sink))) {
+  } else if (passes || !forged(sink, seen, net, machine::Link::kSerial, address_of(sink))) {
     acks_.showed_life(sink, seen.place.time_us);
-    if (forwarding_.came_up(sink, net)) joins_.hears_on(sink, seen.place.time_us);
+    if (passes) joins_.hears_on(sink, seen.place.time_us);
     forwarding_.sent_on_serial(sink, seen, net);
   }
   base_station_hears(sink, seen, mark, net);

@@ -79,7 +79,8 @@ void Judge::hears(std::uint16_t node, const machine::Router& router, machine::Li
   const bool off = interfaces_.off(node, from, seen.place.time_us);
   const Standing standing = this->standing(node);
   ReqId forbidden = free ? ReqId::kNone : route.requirement;
-  // What is to be passed on is for somebody else, and what a sink hands up for the base station.
+  // A message to be passed on is for somebody else; one that a sink hands up is for the base
+  // station, or for another island.
   const bool onward = route.onward != machine::Route::Onward::kNowhere;
   const bool base = is(node, Role::kBaseStation);
   if (!free && base) forbidden = "N8-DELIVER"_rule;

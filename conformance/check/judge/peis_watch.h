@@ -70,7 +70,7 @@ class PeisWatch {
     Messages up;               ///< From the sink.
     Messages down;             ///< From PEIS.
     bool moved = false;        ///< Its application set another island.
-    std::vector<Asked> asked;  ///< Calls of which the sink was not told yet, the oldest first.
+    std::vector<Asked> asked;  ///< Calls that the sink was not told of, oldest first.
   };
 
   static Message* match(Messages& messages, const Net& net);

@@ -331,8 +331,8 @@ Originals::Asked Originals::judge_wrap(std::uint16_t node, const Observation& se
     return again ? Asked::kUnknown : Asked::kYes;
   }
   if ((calls.size() == 0 && !context_.device(node).whole) || calls.full()) return Asked::kUnknown;
-  // What was sent before the log began may have waited, and nobody knows what a log leaves out that
-  // is neither whole nor has what the node was given (decision 13).
+  // A message from before the log may have waited. Nobody knows what a log leaves out unless it is
+  // whole or has what the node was given (decision 13).
   const bool whole = context_.device(node).hearing && (context_.options.start_cold || begun_[node]);
   if (!asked) {
     context_.report(rule, whole ? Severity::kFail : Severity::kInconclusive, seen.place, node,

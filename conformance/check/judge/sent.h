@@ -100,8 +100,10 @@ class Originals {
   enum class Asked : std::uint8_t { kUnknown, kYes, kNo };
   Asked judge_wrap(std::uint16_t node, const Observation& seen, const Net& net, machine::Link link);
   std::uint8_t take_events(std::uint16_t node, std::uint16_t number);
-  bool rightly_acked(std::uint16_t node, const Net& message);
-  bool ill_acked(std::uint16_t node, const Net& message);
+  template <typename Fits>
+  bool heard_ack(std::uint16_t node, std::uint16_t number, Fits fits) const;
+  bool rightly_acked(std::uint16_t node, const Net& message) const;
+  bool ill_acked(std::uint16_t node, const Net& message) const;
   void judge_number(std::uint16_t node, const Observation& seen, const Net& net, Asked asked);
 
   Context& context_;

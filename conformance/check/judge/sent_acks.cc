@@ -28,32 +28,31 @@ void Originals::ack_given(std::uint16_t node, const Net& ack, std::int64_t now_u
   }
 }
 
-// Returns whether an ack that fits the message in everything was heard.
-bool Originals::rightly_acked(std::uint16_t node, const Net& message) {
-  Ring<Ack, kRoom>& ring = acks_[node];
+// Returns whether an ack of that number was heard which fits.
+template <typename Fits>
+bool Originals::heard_ack(std::uint16_t node, std::uint16_t number, Fits fits) const {
+  const Ring<Ack, kRoom>& ring = acks_[node];
   for (std::size_t i = 0; i < ring.size(); ++i) {
-    const Ack& ack = ring.newest(i);
-    if (ack.number == message.seq_num && ack.net.src == message.dest &&
-        ack.net.app_id == message.app_id) {
-      return true;
-    }
+    if (ring.newest(i).number == number && fits(ring.newest(i).net)) return true;
   }
-  return ring.size() == 0;
+  return false;
+}
+
+// Returns whether an ack that fits the message in everything was heard, or none of any.
+bool Originals::rightly_acked(std::uint16_t node, const Net& message) const {
+  const auto fits = [&](const Net& ack) {
+    return ack.src == message.dest && ack.app_id == message.app_id;
+  };
+  return acks_[node].size() == 0 || heard_ack(node, message.seq_num, fits);
 }
 
 // Returns whether an ack of the message has a code that is not success: its sender may call that a
 // success or a failure (decision 108).
-bool Originals::ill_acked(std::uint16_t node, const Net& message) {
-  Ring<Ack, kRoom>& ring = acks_[node];
-  for (std::size_t i = 0; i < ring.size(); ++i) {
-    const Ack& ack = ring.newest(i);
-    const auto body = rubicon::RubiconAckView::parse(ack.net.body());
-    if (ack.number == message.seq_num && body && body->ack() != 0 &&
-        body->type() == rubicon::AmType::kLearningNotification) {
-      return true;
-    }
-  }
-  return false;
+bool Originals::ill_acked(std::uint16_t node, const Net& message) const {
+  return heard_ack(node, message.seq_num, [](const Net& ack) {
+    const auto body = rubicon::RubiconAckView::parse(ack.body());
+    return body && body->ack() != 0 && body->type() == rubicon::AmType::kLearningNotification;
+  });
 }
 
 void Originals::told(std::uint16_t node, const Observation& seen, const machine::AckReceived& ack) {
@@ -81,11 +80,8 @@ void Originals::told(std::uint16_t node, const Observation& seen, const machine:
     const std::int64_t patience_us = kTimeouts * context_.ack_timeout_us() + context_.response_us();
     const bool forgotten =
         ring.full() && now - ring.newest(ring.size() - 1).place.time_us <= patience_us;
-    bool came = !ack.success;  // An ack of that number.
-    for (std::size_t i = 0; i < acks_[node].size(); ++i) {
-      came = came || acks_[node].newest(i).number == ack.seq_num;
-    }
-    context_.report(came ? "T3-MATCH"_rule : "T3-SUCCESS"_rule,
+    const bool came = heard_ack(node, ack.seq_num, [](const Net&) { return true; });
+    context_.report(came || !ack.success ? "T3-MATCH"_rule : "T3-SUCCESS"_rule,
                     elsewhere || forgotten ? Severity::kInconclusive
                                            : context_.without(node, device.first_us, now),
                     seen.place, node,

@@ -48,7 +48,7 @@ std::uint16_t SinkJoins::island(std::uint16_t sink) const {
 bool SinkJoins::is_own(std::uint16_t sink, machine::Address address, std::int64_t now_us) const {
   if (address.devid != context_.device(sink).am) return false;
   const auto its = [&](const SinkWatch& watch) {
-    // Of one that is told its island first of all nobody knows which one it had.
+    // If the first island seen of a sink is one that it is told, nobody knows which it had before.
     const bool may = watch.former_island == 0 || address.pid == watch.former_island;
     const bool former =
         watch.island_set && may && now_us <= context_.due_us(sink, watch.island_set_us);
