@@ -320,6 +320,22 @@ void Acks::delivered(std::uint16_t node, const Observation& seen,
                    {}});
 }
 
+void Acks::told(std::uint16_t node, const Observation& seen, std::uint16_t number) {
+  Ring<Arrived, kRoom>& ring = arrived_[node];
+  const Arrived* its = nullptr;
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const Arrived& one = ring.newest(i);
+    if (!one.net.is_ack() || machine::acked_seq_num(one.net.body()) != number) continue;
+    if (its != nullptr) return;  // Nobody knows which of them.
+    its = &one;
+  }
+  // What else comes may be handled where it is received, and messages later.
+  const bool waited = its != nullptr && context_.busy(node, its->whole_us, its->whole_us);
+  if (waited && context_.device(node).role != machine::Role::kBaseStation) {
+    judge_order(node, seen, *its);
+  }
+}
+
 // Judges the order of deliveries, by a log that has what the node was given.
 void Acks::judge_order(std::uint16_t node, const Observation& seen, const Arrived& arrived) {
   Order& order = orders_[node];
@@ -333,7 +349,7 @@ void Acks::judge_order(std::uint16_t node, const Observation& seen, const Arrive
   }
   if (!late) return context_.findings.kept("N2-IN-ORDER"_rule);
   context_.report("N2-IN-ORDER"_rule, Severity::kFail, seen.place, node,
-                  {"The application gets " + name_of(arrived.net) + " after one that came later.",
+                  {"The application gets " + name_of(arrived.net) + " after what came later.",
                    "Messages in the order in which they came.",
                    {}});
 }

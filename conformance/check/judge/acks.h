@@ -91,6 +91,8 @@ class Acks {
   void sent(std::uint16_t node, const Observation& seen, const Net& ack);
   /// Judges a message that by a log the application of `node` got.
   void delivered(std::uint16_t node, const Observation& seen, const machine::Received& received);
+  /// Judges when by a log the application of `node` is told that this number was acked.
+  void told(std::uint16_t node, const Observation& seen, std::uint16_t number);
   /// Notes that the node sent something at this time, so whatever it still owes is overdue.
   void showed_life(std::uint16_t node, std::int64_t now_us);
   /// Judges what the node owes, by a log that has all that it does until then.

@@ -297,6 +297,7 @@ void Judge::told(const Observation& seen, std::uint16_t device) {
     acks_.delivered(device, seen, *received);
   } else if (const auto* ack = std::get_if<machine::AckReceived>(seen.notice)) {
     originals_.told(device, seen, *ack);
+    if (ack->success) acks_.told(device, seen, ack->seq_num);
   } else if (const auto* done = std::get_if<machine::OperationResult>(seen.notice)) {
     const auto asked = asked_island_.find(device);
     if (asked == asked_island_.end()) return;
@@ -556,9 +557,10 @@ void Judge::peis(const Observation& seen, std::uint16_t base) {
   if (!parse_net(seen.frame.payload, net)) return;
   const machine::Address own = address_of(base);
   if (!seen.received) {
+    const bool first = originals_.accepted(base, net.seq_num);
     originals_.used(base, net.seq_num);
     if (!peis_.came(base, net) && forged(base, seen, net, machine::Link::kPeis, own)) return;
-    const bool original = peis_.sent(base, seen, net, own);
+    const bool original = peis_.sent(base, seen, net, own, first);
     if (original) own_message(base, seen, net, machine::Link::kPeis, own);
     return;
   }

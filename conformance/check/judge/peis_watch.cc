@@ -60,7 +60,7 @@ void PeisWatch::surely_up(std::uint16_t base, const Net& net, std::int64_t now_u
 }
 
 bool PeisWatch::sent(std::uint16_t base, const Observation& seen, const Net& net,
-                     machine::Address own) {
+                     machine::Address own, bool first) {
   Base& watch = bases_[base];
   const bool all = net.dest.pid == machine::kBroadcastPid;
   const bool stray = seen.frame.dest != net.dest.pid || (net.dest.pid == own.pid && !all);
@@ -74,8 +74,9 @@ bool PeisWatch::sent(std::uint16_t base, const Observation& seen, const Net& net
   } else {
     context_.findings.kept("N8-PEIS"_rule);
   }
-  Message* const came = match(watch.up, net);
   // Its own comes up, too, where its sink hears what another island's radiates.
+  if (first && net.src == own) return !stray;
+  Message* const came = match(watch.up, net);
   if (came == nullptr && net.src == own) return !stray;
   if (came != nullptr) {
     came->passed = true;

@@ -27,8 +27,9 @@ class PeisWatch {
   void surely_up(std::uint16_t base, const Net& net, std::int64_t now_us);
   /// Judges a message that `base` gives to PEIS; `own` is its address. Returns whether it is one of
   /// its own, to be judged as such; not if no message of this kind goes there, as all else that is
-  /// odd about it has that one cause.
-  bool sent(std::uint16_t base, const Observation& seen, const Net& net, machine::Address own);
+  /// odd about it has that one cause. `first`: its own message of this number did not leave yet.
+  bool sent(std::uint16_t base, const Observation& seen, const Net& net, machine::Address own,
+            bool first);
   /// Takes a message from PEIS to `base`, whose serial interface may be off.
   void given(std::uint16_t base, const Observation& seen, const Net& net, machine::Address own,
              bool serial_off);

@@ -14,7 +14,6 @@ using rubicon::Component;
 constexpr std::int64_t kAtOnceUs = 50'000;
 constexpr std::int64_t kCallUs = 50'000;  // What send accepted is in its buffer then.
 constexpr std::size_t kBufferOut = 4;     // Messages; release 1.0's radio.
-constexpr std::size_t kFloatBytes = rubicon::SynapticDataLayout::ValuesAt::kUnitBytes;
 
 bool known_trans(std::uint8_t trans_id) {
   return trans_id == component::kConnless || trans_id == component::kSynChannel ||
@@ -77,9 +76,12 @@ void Originals::switched(std::uint16_t node, const machine::SetInterface& set,
   const bool whole = context_.device(node).whole;
   for (std::size_t i = 0; i < calls_[node].size(); ++i) {
     Call& one = calls_[node].newest(i);
-    if (!set.on) {
-      (whole ? one.held : one.free) = true;
-    } else if (one.held && !one.free && one.line == set.link) {
+    if (!whole) {
+      one.free = one.free || !set.on;
+    } else if (one.line == set.link && !set.on) {
+      if (!waits(node, one.since_us, now_us)) judge_missing(node, one, now_us);
+      one.held = true;
+    } else if (one.line == set.link && one.held && !one.free) {
       one.held = false;
       one.since_us = now_us;
     }
@@ -98,7 +100,7 @@ void Originals::ends(std::uint16_t node, std::int64_t end_us, const InterfaceWat
   if (!(device.hearing || air) || !context_.run.has_time) return;
   auto& calls = calls_[node];
   for (std::size_t i = 0; i < calls.size(); ++i) {
-    const Call& one = calls.oldest(i);
+    Call& one = calls.oldest(i);
     if (!device.hearing && one.line != Link::kRadio) continue;
     if (!one.result && device.whole && end_us > context_.due_us(node, one.place.time_us)) {
       context_.report("N1-SEQ"_rule, Severity::kFail, one.place, node,
@@ -106,25 +108,29 @@ void Originals::ends(std::uint16_t node, std::int64_t end_us, const InterfaceWat
                        "The number of the message, or 0xFFFF.",
                        {}});
     }
-    if (one.free || one.left || !one.result || one.result == machine::kNoSeq) continue;
     const std::int64_t on_us = interfaces.on_since(node, one.line);
-    const std::int64_t since = std::max(one.place.time_us, on_us);
-    if (on_us < 0 || end_us <= context_.due_us(node, since, one.line)) continue;
-    if (interfaces.awaits(node) == one.result) continue;  // Said by N10-ON.
-    const bool base = device.role == Role::kBaseStation;
-    const bool waited =
-        !base && context_.busy(node, one.place.time_us, one.place.time_us, one.line);
-    context_.report(base && one.line == Link::kSerial ? "N8-SERIAL"_rule
-                    : base                            ? "N8-PEIS"_rule
-                    : waited                          ? "N2-QUEUE"_rule
-                                                      : "N2-ONCE"_rule,
-                    Severity::kFail, one.place, node,
-                    {"send accepted the message to " + text_of(one.send->dest) + " with number " +
-                         number(*one.result) + (waited ? " while the line was busy" : "") +
-                         ", and it never left.",
-                     waited ? "That message, when the line is free." : "That message, once.",
-                     {}});
+    if (on_us < 0 || interfaces.awaits(node) == one.result) continue;  // N10-ON says the latter.
+    one.since_us = std::max(one.since_us, on_us);
+    judge_missing(node, one, end_us);
   }
+}
+
+// Says that a message which may leave since a while never did.
+void Originals::judge_missing(std::uint16_t node, Call& call, std::int64_t now_us) {
+  if (call.free || call.held || call.left || !call.result || call.result == machine::kNoSeq) return;
+  if (now_us <= context_.due_us(node, call.since_us, call.line)) return;
+  const bool base = context_.device(node).role == Role::kBaseStation;
+  const std::int64_t called_us = call.place.time_us;
+  const bool waited = !base && context_.busy(node, called_us, called_us, call.line);
+  ReqId rule = waited ? "N2-QUEUE"_rule : "N2-ONCE"_rule;
+  if (base) rule = call.line == Link::kSerial ? "N8-SERIAL"_rule : "N8-PEIS"_rule;
+  context_.report(rule, Severity::kFail, call.place, node,
+                  {"send accepted the message to " + text_of(call.send->dest) + " with number " +
+                       number(*call.result) + (waited ? " while the line was busy" : "") +
+                       ", and it never left.",
+                   waited ? "That message, when the line is free." : "That message, once.",
+                   {}});
+  call.free = true;
 }
 
 void Originals::told(std::uint16_t node, const Observation& seen,
@@ -227,19 +233,22 @@ void Originals::judge_order(std::uint16_t node, const Observation& seen, const C
   }
 }
 
+// Returns whether what was accepted then may still wait behind other messages.
+bool Originals::waits(std::uint16_t node, std::int64_t since_us, std::int64_t now_us) {
+  const auto& sent = sent_[node];
+  return context_.crowded(node, since_us) ||
+         (sent.size() > 0 && now_us - sent.newest(0).place.time_us <= context_.response_us());
+}
+
 // Says that by a whole log a message left later than an answer may, with nothing else to wait for.
 void Originals::judge_late(std::uint16_t node, const Observation& seen, const Call& call,
                            Link link) {
   const std::int64_t called_us = call.since_us;
   if (!context_.device(node).whole || call.held || call.result != call.left) return;
   if (seen.place.time_us <= context_.due_us(node, called_us, link)) return;
-  // It may have waited behind another one.
-  const bool behind =
-      sent_[node].size() > 0 &&
-      seen.place.time_us - sent_[node].newest(0).place.time_us <= context_.response_us();
-  const bool waits = behind || context_.crowded(node, called_us);
+  const bool may_wait = waits(node, called_us, seen.place.time_us);
   context_.report(
-      "N2-ONCE"_rule, waits ? Severity::kInconclusive : Severity::kFail, seen.place, node,
+      "N2-ONCE"_rule, may_wait ? Severity::kInconclusive : Severity::kFail, seen.place, node,
       {"The message that send accepted leaves " + ms_text(seen.place.time_us - called_us) +
            " after " + (called_us == call.place.time_us ? "the call." : "its interface is on."),
        "Within " + ms_text(context_.response_us()) + ".",
@@ -255,6 +264,14 @@ void Originals::judge_result(std::uint16_t node, const Observation& seen, const 
            " with number " + number(*call.left) + ".",
        call.full ? "A message that send refused is never sent." : "The number of the message.",
        {}});
+}
+
+bool Originals::accepted(std::uint16_t node, std::uint16_t number) const {
+  const Ring<Call, kRoom>& calls = calls_[node];
+  for (std::size_t i = 0; i < calls.size(); ++i) {
+    if (calls.newest(i).result == number) return !calls.newest(i).left;
+  }
+  return false;
 }
 
 bool Originals::asked(std::uint16_t node, const Net& net) const {
@@ -359,7 +376,6 @@ void Originals::sent(std::uint16_t node, const Observation& seen, const Net& net
   const Asked asked = judge_wrap(node, seen, net, link);
   judge_address(node, seen, net, link, own);
   judge_number(node, seen, net, asked);
-  if (net.sound && net.trans_id == component::kSynChannel) judge_synaptic(node, seen, net);
   Sent sent;
   sent.net = net;
   sent.place = seen.place;
@@ -519,35 +535,6 @@ void Originals::judge_number(std::uint16_t node, const Observation& seen, const 
     return;
   }
   context_.findings.kept("N12-REUSE"_rule);
-}
-
-void Originals::judge_synaptic(std::uint16_t node, const Observation& seen, const Net& net) {
-  Said said;
-  said.expected =
-      "SYN_CHANNEL, LEARNING or ESN_DATA, unreliable, one float for each of at most "
-      "ten connections.";
-  const bool app = net.app_id == static_cast<std::uint8_t>(Component::kLearning) ||
-                   net.app_id == static_cast<std::uint8_t>(Component::kEsnData);
-  const std::size_t bytes = net.body().size();
-  if (net.reliable != 0) {
-    said.text = "Synaptic data is sent reliable.";
-  } else if (!app) {
-    said.text = "Synaptic data has the APPID " + number(net.app_id) + ".";
-  } else if (bytes == 0 || bytes % kFloatBytes != 0 ||
-             bytes / kFloatBytes > machine::kConnectionsMax) {
-    said.text = "Synaptic data has " + number(bytes) + " bytes of values.";
-  }
-  if (!said.text.empty()) {
-    context_.report("S2-CONTENT"_rule, Severity::kFail, seen.place, node, std::move(said));
-  } else {
-    context_.findings.kept("S2-CONTENT"_rule);
-  }
-  if (net.src == net.dest) {
-    context_.report("S4-LOCAL"_rule, Severity::kFail, seen.place, node,
-                    {"Data of a channel from the node to itself is sent.",
-                     "A local channel hands its values over without sending.",
-                     {}});
-  }
 }
 
 void Originals::close(std::uint16_t node, std::size_t newest, std::int64_t now_us) {

@@ -46,6 +46,8 @@ class Originals {
   /// Returns whether a call of its application, by a log, asked for such a message that did not
   /// leave yet.
   bool asked(std::uint16_t node, const Net& net) const;
+  /// Returns whether by its log `node` accepted a message of this number that did not leave yet.
+  bool accepted(std::uint16_t node, std::uint16_t number) const;
   /// Judges a message of its own that `node`, whose address is `own`, sends over `link`.
   void sent(std::uint16_t node, const Observation& seen, const Net& net, machine::Link link,
             machine::Address own);
@@ -75,7 +77,7 @@ class Originals {
     Place place;
     bool free = false;                           ///< It need not leave, or that is not seen.
     machine::Link line = machine::Link::kRadio;  ///< By which it leaves.
-    bool held = false;                           ///< An interface is off, or it need not leave.
+    bool held = false;                           ///< Its interface is off, or it need not leave.
     std::int64_t since_us = 0;                   ///< It may leave: the call, or its interface on.
     bool self = false;                           ///< It is for the node itself.
     bool full = false;                           ///< send refused it, as the buffer was full.
@@ -88,10 +90,11 @@ class Originals {
   void close(std::uint16_t node, std::size_t newest, std::int64_t now_us);
   void judge_address(std::uint16_t node, const Observation& seen, const Net& net,
                      machine::Link link, machine::Address own);
-  void judge_synaptic(std::uint16_t node, const Observation& seen, const Net& net);
   void judge_result(std::uint16_t node, const Observation& seen, const Call& call);
   void judge_late(std::uint16_t node, const Observation& seen, const Call& call,
                   machine::Link link);
+  bool waits(std::uint16_t node, std::int64_t since_us, std::int64_t now_us);
+  void judge_missing(std::uint16_t node, Call& call, std::int64_t now_us);
   std::size_t waiting(std::uint16_t node);
   void judge_refused(std::uint16_t node, const Observation& seen, const Call& call,
                      std::size_t waiting);

@@ -161,7 +161,37 @@ void SynapticWatch::note(Node& node, const machine::Synaptic& before, std::int64
   }
 }
 
+void SynapticWatch::judge_content(std::uint16_t node, const Observation& seen, const Net& net) {
+  Said said;
+  said.expected =
+      "SYN_CHANNEL, LEARNING or ESN_DATA, unreliable, one float for each of at most "
+      "ten connections.";
+  const bool app = net.app_id == static_cast<std::uint8_t>(rubicon::Component::kLearning) ||
+                   net.app_id == static_cast<std::uint8_t>(rubicon::Component::kEsnData);
+  const std::size_t bytes = net.body().size();
+  constexpr std::size_t kUnit = rubicon::SynapticDataLayout::ValuesAt::kUnitBytes;
+  if (net.reliable != 0) {
+    said.text = "Synaptic data is sent reliable.";
+  } else if (!app) {
+    said.text = "Synaptic data has the APPID " + number(net.app_id) + ".";
+  } else if (bytes == 0 || bytes % kUnit != 0 || bytes / kUnit > machine::kConnectionsMax) {
+    said.text = "Synaptic data has " + number(bytes) + " bytes of values.";
+  }
+  if (!said.text.empty()) {
+    context_.report("S2-CONTENT"_rule, Severity::kFail, seen.place, node, std::move(said));
+  } else {
+    context_.findings.kept("S2-CONTENT"_rule);
+  }
+  if (net.src == net.dest) {
+    context_.report("S4-LOCAL"_rule, Severity::kFail, seen.place, node,
+                    {"Data of a channel from the node to itself is sent.",
+                     "A local channel hands its values over without sending.",
+                     {}});
+  }
+}
+
 void SynapticWatch::sent(std::uint16_t device, const Observation& seen, const Net& net) {
+  judge_content(device, seen, net);
   Node& node = nodes_[device];
   if (!node.logged || !seen.place.timed()) return;
   const std::int64_t now = seen.place.time_us;

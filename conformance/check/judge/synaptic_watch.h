@@ -1,4 +1,4 @@
-// Compares synaptic data with the channels in an application's log. Without a log, silent.
+// Judges what synaptic data hold and, by an application's log, whether its channels say so.
 #pragma once
 
 #include <array>
@@ -127,6 +127,7 @@ class SynapticWatch {
   void settle_unknowns(std::uint16_t device, std::int64_t now_us);
   void settle_outputs(std::uint16_t device, std::int64_t now_us);
   bool crowded(std::uint16_t device, std::int64_t from_us, std::int64_t to_us) const;
+  void judge_content(std::uint16_t node, const Observation& seen, const Net& net);
   void judge_grid(std::uint16_t device, const Observation& seen, const Ticks& ticks);
   void note(Node& node, const machine::Synaptic& before, std::int64_t now_us);
   static void note_old(Out& out, const machine::Synaptic& before, std::size_t pos,
