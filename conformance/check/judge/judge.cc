@@ -301,9 +301,8 @@ void Judge::told(const Observation& seen, std::uint16_t device) {
   } else if (const auto* done = std::get_if<machine::OperationResult>(seen.notice)) {
     const auto asked = asked_island_.find(device);
     if (asked == asked_island_.end()) return;
-    if (done->success && machine::is_reserved(asked->second)) {
-      if (is(device, Role::kBaseStation)) peis_.sets_reserved(device, seen, asked->second);
-    } else if (done->success && who_.devices[device].whole) {
+    // A call without a result is answered with success; what is sent tells (decision 132).
+    if (done->success && !machine::is_reserved(asked->second) && who_.devices[device].whole) {
       own_island_[device] = asked->second;
     }
     if (!done->success) peis_.refused_island(device, asked->second);

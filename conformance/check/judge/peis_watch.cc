@@ -181,7 +181,12 @@ void PeisWatch::refused_island(std::uint16_t base, std::uint16_t island) {
 void PeisWatch::told_island(std::uint16_t base, const Observation& seen, std::int32_t island) {
   const auto config = rubicon::ConfigView::parse(seen.frame.payload);
   if (config && config->type() == rubicon::CommandCode::kSetIslandId && island < 0) {
-    return sets_reserved(base, seen, config->value());
+    context_.report(
+        "N9-OTHER"_rule, Severity::kFail, seen.place, base,
+        {"The base station sets island " + number(config->value()) + ", which is reserved.",
+         "It refuses the call, and its sink is told nothing.",
+         {}});
+    return;
   }
   std::vector<Asked>& asked = bases_[base].asked;
   if (asked.empty()) return;
@@ -194,13 +199,6 @@ void PeisWatch::told_island(std::uint16_t base, const Observation& seen, std::in
            (island < 0 ? "none." : number(static_cast<std::uint64_t>(island)) + "."),
        "SET_ISLAND_ID with the island of the call.",
        {}});
-}
-
-void PeisWatch::sets_reserved(std::uint16_t base, const Observation& seen, std::uint16_t island) {
-  context_.report("N9-OTHER"_rule, Severity::kFail, seen.place, base,
-                  {"The base station sets island " + number(island) + ", which is reserved.",
-                   "It refuses the call, and its sink is told nothing.",
-                   {}});
 }
 
 void PeisWatch::overdue_island(std::uint16_t base, std::int64_t now_us) {

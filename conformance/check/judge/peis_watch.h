@@ -44,8 +44,6 @@ class PeisWatch {
   void asked_island(std::uint16_t base, const Observation& call, std::uint16_t island);
   /// Notes that the last call, which set `island`, failed.
   void refused_island(std::uint16_t base, std::uint16_t island);
-  /// Reports that `base` takes a reserved island, by its answer to the call or its config message.
-  void sets_reserved(std::uint16_t base, const Observation& seen, std::uint16_t island);
   /// Judges a config message of `base` that sets `island`; -1 if it sets none.
   void told_island(std::uint16_t base, const Observation& seen, std::int32_t island);
   /// Judges what the base station owes, by a log that has all that it does until then.

@@ -406,8 +406,12 @@ std::size_t expect_same(const Mutants& mutants, Chance& chance, unsigned every,
     failed += all.failed;
     asked += all.asked;
     missing += all.missing;
-    // A log says itself who sends a frame: no rule is about its AM source.
-    if (mutant.name.find("am.src") != std::string::npos) continue;
+    // A log says itself who sends a frame: no rule is about its AM source. A sink that counts old
+    // bytes behind whole floats is free to (N6-CONTENT), but no line can say that.
+    if (mutant.name.find("am.src") != std::string::npos ||
+        mutant.name.find("synaptic_data by serial: nbytes") != std::string::npos) {
+      continue;
+    }
     untold.insert(untold.end(), all.untold.begin(), all.untold.end());
   }
   std::printf(
