@@ -27,6 +27,13 @@ class Ring {
     return place;
   }
   void clear() { count_ = 0; }
+  /// Forgets the newest that `keeps` refuses, and all older ones.
+  template <typename Keeps>
+  void keep_newest(Keeps keeps) {
+    std::size_t kept = 0;
+    while (kept < count_ && keeps(newest(kept))) ++kept;
+    count_ = kept;
+  }
 
  private:
   std::vector<T> items_;

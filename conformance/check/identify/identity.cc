@@ -180,12 +180,32 @@ class Identifier {
            options_.testers.end();
   }
 
+  // Returns the sink whose one missing frame the stream is, in the name of an island that nobody
+  // else has: where no frame escapes, its DSN tells whose it is.
+  std::uint16_t misnamed(std::size_t which) const {
+    const auto& streams = streams_.all();
+    const Stream& stream = streams[which];
+    if (!options_.sniffer_complete || !stream.sink) return kNobody;
+    std::uint16_t found = kNobody;
+    for (std::size_t i = 0; i < streams.size(); ++i) {
+      const bool same = i != which && streams[i].sink && streams[i].am == stream.am;
+      if (same && streams[i].first_island == stream.first_island) return kNobody;
+      if (i < which && streams[i].lacks(stream)) found = device_of_stream_[i];
+    }
+    return found;
+  }
+
   void resolve_streams() {
     const auto& streams = streams_.all();
     device_of_stream_.assign(streams.size(), kNobody);
     starts_life_.assign(streams.size(), false);
     for (std::size_t i = 0; i < streams.size(); ++i) {
       const Stream& stream = streams[i];
+      if (const std::uint16_t sink = misnamed(i); sink != kNobody) {
+        device_of_stream_[i] = sink;
+        ++out_.devices[sink].frames;
+        continue;
+      }
       const std::uint16_t before = earlier_device(stream);
       // A second mote with the same id, in another island, sends while the first does.
       const bool another = role_of(stream) == Role::kMote && stream.frames >= kResumeFrames;

@@ -34,6 +34,12 @@ void add_hole(Stream& stream, std::int64_t until_us) {
 
 }  // namespace
 
+bool Stream::lacks(const Stream& other) const {
+  return other.frames == 1 && other.am == am && std::ranges::any_of(missing, [&](const Missing& m) {
+           return m.dsn == other.dsn && m.from_us <= other.first_us && other.first_us <= m.to_us;
+         });
+}
+
 Streams::Streams(const Run& run, const Options& options)
     : run_(run),
       given_(options),
@@ -131,7 +137,11 @@ std::uint16_t Streams::assign(std::uint32_t index, bool& repeat) {
   }
   if (best == kLast) return open(index, hint);
   Stream& stream = streams_[best];
-  if (static_cast<std::uint8_t>(seen.dsn - stream.dsn) != 1) add_hole(stream, now);
+  const auto ahead = static_cast<std::uint8_t>(seen.dsn - stream.dsn);
+  if (ahead != 1) add_hole(stream, now);
+  if (ahead == 2 && stream.missing.size() < kHolesMax) {
+    stream.missing.push_back({static_cast<std::uint8_t>(seen.dsn - 1), stream.last_us, now});
+  }
   ++stream.frames;
   go_on(stream, index, hint);
   return best;

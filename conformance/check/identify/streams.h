@@ -38,6 +38,15 @@ struct Stream {
   std::int64_t last_us = 0;
   std::uint64_t frames = 0;
   std::vector<std::pair<std::int64_t, std::int64_t>> holes;
+  /// A single frame that is missing.
+  struct Missing {
+    std::uint8_t dsn = 0;
+    std::int64_t from_us = 0;
+    std::int64_t to_us = 0;
+  };
+  std::vector<Missing> missing;
+  /// Returns whether this one frame of another stream is the one that is missing in this stream.
+  bool lacks(const Stream& other) const;
 };
 
 /// Assigns frames to streams, one after the other.

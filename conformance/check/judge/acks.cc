@@ -14,8 +14,10 @@ Acks::Acks(Context& context, std::size_t devices)
       orders_(devices),
       acked_apps_(devices) {}
 
-void Acks::begin_life(std::uint16_t node) {
-  arrived_[node].clear();
+void Acks::begin_life(std::uint16_t node, std::int64_t since_us) {
+  Ring<Arrived, kRoom>& ring = arrived_[node];
+  ring.keep_newest([&](const Arrived& one) { return one.place.time_us >= since_us; });
+  for (std::size_t i = 0; i < ring.size(); ++i) ring.newest(i).sure = false;
   owed_[node] = 0;
   orders_[node] = {};
 }
@@ -189,7 +191,9 @@ void Acks::refuse(std::uint16_t node, const Observation& seen, const Net& ack, s
                 " bytes that holds no sequence number.";
     said.expected = "The acknowledged number, alone or in a learning_notification.";
   } else if (best == nullptr) {
-    if (context_.half_heard(node)) return context_.needs_host(node, seen.place);
+    // What a mote of its own island sends comes by radio alone.
+    const bool of_mote = ack.dest.pid == ack.src.pid && !machine::is_reserved(ack.dest.devid);
+    if (context_.half_heard(node) && !of_mote) return context_.needs_host(node, seen.place);
     severity = context_.on_line(node, context_.without_ever(kNobody, now));
     meant_ack(node, ack);
     said.text = "An ack to " + text_of(ack.dest) + " of number " +

@@ -79,7 +79,7 @@ class Acks {
  public:
   Acks(Context& context, std::size_t devices);
 
-  void begin_life(std::uint16_t node);
+  void begin_life(std::uint16_t node, std::int64_t since_us);
   /// Notes that a message comes to `node`.
   void arrived(std::uint16_t node, const Observation& seen, std::uint16_t sender, const Net& net,
                const Arrival& arrival);

@@ -74,7 +74,7 @@ class Forwarding {
   void went_up(std::uint16_t sink, std::int64_t now_us);
   /// Sets the sink's island from now on.
   void set_island(std::uint16_t sink, std::uint16_t island, std::int64_t now_us, bool sure);
-  void begin_life(std::uint16_t sink);
+  void begin_life(std::uint16_t sink, std::int64_t since_us);
   /// Judges what the sink owes, by a log that has all that it does until then.
   void overdue(std::uint16_t sink, std::int64_t now_us);
   void finish(std::int64_t end_us);

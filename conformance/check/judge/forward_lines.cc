@@ -56,12 +56,14 @@ void Forwarding::set_island(std::uint16_t sink, std::uint16_t island, std::int64
   line->island = island;
 }
 
-void Forwarding::begin_life(std::uint16_t sink) {
+void Forwarding::begin_life(std::uint16_t sink, std::int64_t since_us) {
   Line* const line = find(sink);
   if (line == nullptr) return;
-  line->up.clear();
-  line->down.clear();
-  line->owed_up = line->owed_down = 0;
+  const auto later = [&](const Passing& one) { return one.place.time_us >= since_us; };
+  line->up.keep_newest(later);
+  line->down.keep_newest(later);
+  forget_owed(line->up, line->owed_up);
+  forget_owed(line->down, line->owed_down);
   line->off = line->deaf = false;
   if (context_.device(sink).hearing) line->island = context_.device(sink).island;
 }

@@ -26,7 +26,8 @@ Judge::Judge(const Run& run, const Options& options)
       acks_(context_, who_.devices.size()),
       synaptic_(context_, who_.devices.size()),
       peis_(context_, who_.devices.size()),
-      interfaces_(context_, who_.devices.size()) {}
+      interfaces_(context_, who_.devices.size()),
+      on_air_us_(who_.devices.size(), -1) {}
 
 Report Judge::judge() {
   Report report;
@@ -66,9 +67,11 @@ void Judge::look(std::uint32_t index) {
     case Kind::kRadio:
       ++frames_;
       if (mark.repeat) return repeated(index, seen, mark);
-      if (mark.new_life) begin_life(mark.device);
+      // A sink speaks when it is spoken to, so it has heard something by its first frame.
+      if (mark.new_life) begin_life(mark.device, on_air_us_[mark.device]);
       radio(index, seen, mark);
       if (mark.device == kNobody) break;
+      on_air_us_[mark.device] = seen.place.time_us;
       joins_.showed_life(mark.device, seen.place.time_us);
       if (is(mark.device, Role::kSink)) {
         forwarding_.showed_life(mark.device, seen.place.time_us);
@@ -97,7 +100,7 @@ void Judge::look(std::uint32_t index) {
       joins_.rebooted(mark.device, seen.place.time_us);
       announcements_.ends(mark.device, seen.place.time_us);
       originals_.ends(mark.device, seen.place.time_us, interfaces_);
-      begin_life(mark.device);
+      begin_life(mark.device, INT64_MAX);
       break;
     case Kind::kLinkAck:
     case Kind::kDamaged: break;
@@ -114,15 +117,15 @@ void Judge::overdue(std::uint16_t device, std::int64_t now_us) {
   synaptic_.settle(device, now_us);
 }
 
-void Judge::begin_life(std::uint16_t device) {
+void Judge::begin_life(std::uint16_t device, std::int64_t since_us) {
   if (is(device, Role::kMote)) motes_.begin_life(device);
   join_calls_.begin_life(device);
-  if (is(device, Role::kSink)) sinks_.begin_life(device);
-  if (is(device, Role::kSink)) forwarding_.begin_life(device);
+  if (is(device, Role::kSink)) sinks_.begin_life(device, since_us);
+  if (is(device, Role::kSink)) forwarding_.begin_life(device, since_us);
   own_island_.erase(device);
   context_.begin_life(device);
   originals_.begin_life(device);
-  acks_.begin_life(device);
+  acks_.begin_life(device, since_us);
   synaptic_.begin_life(device);
   peis_.begin_life(device);
   joins_.begin_life(device);
@@ -214,6 +217,8 @@ void Judge::joins_heard(std::uint32_t index, const Observation& seen, const Mark
 void Judge::replied(std::uint32_t index, const Observation& seen, const Mark& mark,
                     const Reply& reply) {
   if (seen.received) sinks_.answered(seen.frame.dest, reply.seq_num);
+  const bool stray = mark.device == kNobody || !who_.devices[mark.device].known;
+  if (stray && !seen.received) sinks_.may_have_replied(seen, reply);
   const bool all = seen.frame.dest == machine::kAmBroadcast;
   context_.for_motes(all ? reply.mote : seen.frame.dest, [&](std::uint16_t mote) {
     const bool given = mark.receiver == mote;
@@ -486,10 +491,7 @@ void Judge::serial(std::uint32_t index, const Observation& seen, const Mark& mar
     down_serial(index, seen, mark, sink, net);
   } else {
     up_serial(seen, mark, sink, net);
-    SerialJoined joined;
-    if (!whole_log && !parse_serial_joined(net, joined)) {
-      announcements_.showed_life(sink, seen.place.time_us);
-    }
+    if (!whole_log) announcements_.showed_life(sink, seen.place.time_us);
   }
   if (net.is_ack()) ack_comes(net);
   if (net.is_ack() && mark.receiver != kNobody) {

@@ -31,7 +31,9 @@ class Judge {
   void look(std::uint32_t index);
   // Judges what a node should have done by now, where its log has all that it did.
   void overdue(std::uint16_t device, std::int64_t now_us);
-  void begin_life(std::uint16_t device);
+  /// Forgets what the device knew before that time, at which its life began at the earliest: it
+  /// may have heard what came since.
+  void begin_life(std::uint16_t device, std::int64_t since_us);
   // Takes the link's own repetition, or a log's line that shows who received a frame.
   void repeated(std::uint32_t index, const Observation& seen, const Mark& mark);
   // Takes a log's line that gives a node a message that is known from its sender.
@@ -101,8 +103,10 @@ class Judge {
   InterfaceWatch interfaces_;
   // Of base stations whose log shows what their calls of set_island_id returned.
   std::map<std::uint16_t, std::uint16_t> asked_island_;
+
   std::map<std::uint16_t, std::uint16_t> own_island_;
-  std::set<std::uint16_t> cut_short_;  // Senders of net_msg under 114 bytes on a serial line.
+  std::vector<std::int64_t> on_air_us_;  // The last frame of each device by radio; -1: none.
+  std::set<std::uint16_t> cut_short_;    // Senders of net_msg under 114 bytes on a serial line.
   std::uint64_t frames_ = 0;
 };
 

@@ -113,7 +113,7 @@ class SinkJoins {
  public:
   explicit SinkJoins(Context& context);
 
-  void begin_life(std::uint16_t sink);
+  void begin_life(std::uint16_t sink, std::int64_t since_us);
   void set_island(std::uint16_t sink, std::uint16_t island, const Place& at, bool sure);
   /// Notes a config message that changes nothing.
   void configured(std::uint16_t sink, const machine::Frame& frame);
@@ -132,6 +132,9 @@ class SinkJoins {
 
   /// Notes that the mote was given a reply to this request, though no sink was seen to send it.
   void answered(std::uint16_t mote_am, std::uint16_t seq_num);
+
+  /// Takes a reply of an unknown sender: it may be the sink's, in a life of few frames.
+  void may_have_replied(const Observation& seen, const Reply& reply);
 
   /// Returns whether a sink that was told another island may show its former one: what made it do
   /// so came before, or it was never told, or has lost its memory since. In these cases the former

@@ -227,5 +227,64 @@ TEST(Captures, AMoteThatAsksOnAfterAnOfferThatItHad) {
   EXPECT_EQ(found_in(script).substr(0, 8), "F:J4-ACK");
 }
 
+// Sink and mote lose their power at 3 s, and the mote joins anew; `more` others follow.
+Script rebooted(int more) {
+  Script script;
+  script.join(0, 11, 2, 100).join(1000, 11, 3, 200);
+  script.dsn[11 * 65536U + 1] = script.dsn[2] = 90;
+  for (int i = 0; i <= more; ++i) {
+    const double ms = 5000 + 1000.0 * i;
+    const auto mote = static_cast<std::uint16_t>(i == 0 ? 2 : 10 + i);
+    const auto number = static_cast<std::uint16_t>(300 + i);
+    script.request(ms, mote, number);
+    script.reply(ms + 10, 11, mote, number, 500 + 1000 * static_cast<std::uint32_t>(i));
+    script.ack_join(ms + 20, 11, mote, number).link_ack().joined(ms + 40, 11, mote);
+  }
+  return script;
+}
+
+TEST(Captures, ARebootedSinkHeardWhatItsFirstFrameAnswers) {
+  EXPECT_EQ(found_in(rebooted(2)), "");
+  EXPECT_EQ(found_in(rebooted(0)), "S:");  // An unknown sender: too few frames to know it by.
+}
+
+TEST(Captures, AMessageForEveryIslandMayBeSentOnOnce) {
+  Script script;
+  const NetFields all = message({11, 2}, {machine::kBroadcastPid, machine::kBroadcastDevid}, 7);
+  script.join(0, 11, 2, 100).net(500, 2, 1, all).net(510, 1, machine::kAmBroadcast, all, 11);
+  EXPECT_EQ(found_in(script), "");
+  script.net(700, 1, machine::kAmBroadcast, all, 11);
+  EXPECT_EQ(found_in(script), "F:N6-ONCE");
+}
+
+TEST(Captures, AReplyInTheNameOfAnIslandThatNobodyHas) {
+  const auto offers = [](std::uint16_t island) {
+    Script script;
+    script.join(0, 11, 2, 100).request(1000, 3, 200);
+    script.dsn[island * 65536U + 1] = script.dsn[11 * 65536U + 1]++;
+    script.reply(1010, island, 3, 200, 1010);
+    script.join(3000, 11, 4, 300);
+    return found_in(script);
+  };
+  EXPECT_EQ(offers(12), "F:J3-ADDRESS");
+}
+
+TEST(Captures, AReportIsOvertakenByAnother) {
+  Script script;
+  script.request(0, 2, 100).reply(10, 11, 2, 100, 10).ack_join(20, 11, 2, 100).link_ack();
+  script.join(1000, 11, 3, 200);
+  EXPECT_EQ(found_in(script), "F:J6-REPORT");
+}
+
+TEST(Captures, AnAckOfANumberThatNoMessageHad) {
+  Script script;
+  const NetFields up = message({11, 2}, {11, 1}, 5, 1);
+  NetFields wrong = up;
+  wrong.seq_num = 0x500;
+  script.join(0, 11, 2, 100).net(500, 2, 1, up).link_ack();
+  script.net(510, 1, 2, wrong.ack(30), 11);
+  EXPECT_EQ(found_in(script), "F:T2-CONTENT");
+}
+
 }  // namespace
 }  // namespace rubric::check::captures_test
