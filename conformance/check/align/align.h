@@ -70,7 +70,9 @@ struct AlignOptions {
 /// Puts the captures of `run` on the clock of the first one that has stamps, where the frames that
 /// two of them share show that their clocks differ; Run::facts says what was done, or why not.
 /// Stamps are those of the files, kNoStamp where there are none; `seen` is in the order of files.
-/// Lines of .rtr logs keep their times (decision 9).
-void align(Run& run, const AlignOptions& options);
+/// A log beside captures is put on their clock where both show the same events; its own clock is
+/// taken for theirs, within `skew_us`, where nothing contradicts that, unless its zero is its
+/// `own_zero` (decision 9).
+void align(Run& run, const AlignOptions& options, bool own_zero = false);
 
 }  // namespace rubric::check

@@ -98,6 +98,7 @@ class Identifier {
     const bool serial = seen.kind == Observation::Kind::kSerial && node != kNobody;
     if (serial && run_.nodes[node].role == Role::kSink) logged_sink_[seen.tap] = node;
     if (serial && run_.nodes[node].role == Role::kBaseStation) logged_host_[seen.tap] = node;
+    if (seen.kind == Observation::Kind::kReboot) reboots_.insert(node);
     if (!seen.received) {
       mark.device = node;
       if (seen.kind == Observation::Kind::kRadio) out_.hears_radio = true;
@@ -192,7 +193,8 @@ class Identifier {
       const bool named = given_.names(stream.am, stream.plain_island);
       const bool goes_on = before != kNobody && follows(stream, before);
       if (goes_on || (before != kNobody && named && !another)) {
-        starts_life_[i] = goes_on && out_.devices[before].radio && (stream.joins || stream.sink);
+        starts_life_[i] = goes_on && out_.devices[before].radio && (stream.joins || stream.sink) &&
+                          !reboots_.contains(before);
         take_stream(out_.devices[before], stream);
         device_of_stream_[i] = before;
         continue;
@@ -409,6 +411,7 @@ class Identifier {
   Identity out_;
   std::map<std::uint32_t, std::uint16_t> logged_sink_;  // User of a tap, by a log.
   std::map<std::uint32_t, std::uint16_t> logged_host_;  // The base station at its other end.
+  std::set<std::uint16_t> reboots_;  // Nodes whose log tells that they started anew.
   std::vector<std::uint16_t> device_of_stream_;
   std::vector<bool> starts_life_;
   std::array<std::uint32_t, kRecentFrames> recent_{};  // Observation + 1.
