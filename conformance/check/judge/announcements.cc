@@ -86,7 +86,7 @@ void Announcements::announce(SinkWatch& sink, const Place& at, machine::Address 
     watch.report_due = false;
     --sink.debts;
     context_.left(sink.device, machine::Link::kSerial, at, watch.ack_whole_us,
-                  watch.ack_whole_us + context_.response_us(),
+                  context_.handled_us(sink.device, watch.ack_whole_us, at.time_us),
                   "serial_joined of mote " + number(address.devid));
   }
   if (next_.empty()) {
