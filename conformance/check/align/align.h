@@ -34,6 +34,10 @@
 // causes would come after effects, or kUnwaitedUs where frames went one way only. A drift is taken
 // out only if kDriftFrames pairs over kDriftSpanUs show it well beyond their scatter.
 //
+// A log of applications (align_logs.h) shares events with captures, no frames. It lies where the
+// fewest effects come before their causes: at its own times where no others are better, else where
+// at least kFramesMin events say. Run::logs says how much earlier or later it may be.
+//
 // An order (align_order.cc) for a file without stamps needs kOrderFramesMin pairs too, three
 // quarters of them in one order in both files, and the same majority over missing frames. Each pair
 // then bounds its neighbours: an effect comes after its cause, within the response time.

@@ -63,7 +63,7 @@ Run read_both(const Recorded& from, bool stamps = true) {
   RunReader reader;
   const std::uint32_t file = reader.open("capture");
   const std::unique_ptr<Reader> packets = make_reader(InputFormat::kPcapng, {});
-  const auto take = [&](const Packet& packet) {
+  auto take = [&](const Packet& packet) {
     Packet one = packet;
     if (!stamps) one.time_ns = kNoTime;
     reader.take(file, one, packets->interfaces()[packet.interface_id].name);
