@@ -252,10 +252,12 @@ class CausalRange {
     if (edges.empty()) return;
     std::tie(low, high) =
         std::pair(*std::ranges::min_element(edges), *std::ranges::max_element(edges));
-    const bool bounded_below = !least_.empty() && least_.front() <= low + kTolerated;
-    const bool bounded_above = !most_.empty() && most_.back() >= high - kTolerated;
-    if (!bounded_below) low = high - static_cast<double>(kUnwaitedUs);
-    if (!bounded_above) high = low + static_cast<double>(kUnwaitedUs);
+    // Where nothing bounds one side, the fastest event waited for little.
+    const bool below = !least_.empty() && least_.front() <= low + kTolerated;
+    const bool above = !most_.empty() && most_.back() >= high - kTolerated;
+    likely = below && above ? (low + high) / 2 : above ? high : low;
+    if (!below) low = high - static_cast<double>(kUnwaitedUs);
+    if (!above) high = low + static_cast<double>(kUnwaitedUs);
   }
 
   // Returns how many effects come before their causes.
@@ -275,9 +277,16 @@ class CausalRange {
     }
   }
 
+  // Returns by how much events contradict each other.
+  double contradiction() const {
+    if (broken == 0 || least_.empty() || most_.empty()) return 0;
+    return std::max(0.0, least_.back() - most_.front());
+  }
+
   std::size_t broken = SIZE_MAX;
   double low = 0;
   double high = 0;
+  double likely = 0;
 
  private:
   static constexpr double kTolerated = kRoundedUs;
@@ -318,7 +327,7 @@ class Fit {
       double low = -skew_us;
       double high = skew_us;
       all.around_zero(low, high);
-      const double drifted = all.broken > 0 && !points_.empty() ? drift_us(points_) : 0;
+      const double drifted = unseen_drift_us(points_, all);
       out_.clocks = Clocks::kAgree;
       out_.earlier_us = std::llround(std::min(high + drifted, skew_us));
       out_.slack_us = std::llround(std::min(drifted - low, skew_us));
@@ -333,10 +342,11 @@ class Fit {
     if (4 * range.broken > in_.size()) {
       return unsure("some of the frames that are in both would come before their causes");
     }
-    const double drifted = range.broken > 0 ? drift_us(in_) : 0;
+    const double drifted = unseen_drift_us(in_, range);
     out_.clocks = Clocks::kDiffer;
-    out_.offset_us = base_us + std::llround(range.high + drifted);
-    out_.slack_us = std::llround(range.high - range.low + 2 * drifted);
+    out_.offset_us = base_us + std::llround(range.likely);
+    out_.earlier_us = std::llround(range.high - range.likely + drifted);
+    out_.slack_us = std::llround(range.likely - range.low + drifted);
     out_.at_us = in_.front().at_us;
     out_.frames = in_.size();
     return out_;
@@ -351,9 +361,12 @@ class Fit {
     return 2 * static_cast<std::size_t>(far) <= points_.size();
   }
 
-  // Returns how far clocks may have drifted unseen.
-  static double drift_us(const Points& in) {
-    return kDriftMax * static_cast<double>(in.back().at_us - in.front().at_us);
+  // Returns how far the clocks may have drifted unseen, where events contradict each other.
+  static double unseen_drift_us(const Points& in, const CausalRange& range) {
+    if (in.empty()) return 0;
+    const double most = kDriftMax * static_cast<double>(in.back().at_us - in.front().at_us);
+    return std::min(
+        {range.contradiction(), most, 2 * quantile(deviations(in), 0.9) + kDriftShownUs});
   }
 
   // Finds the pairs that agree. Returns false, having said why, if they are too few.

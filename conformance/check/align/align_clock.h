@@ -28,7 +28,7 @@ struct ClockFit {
   double spread_us = 0;        ///< Nine tenths of them are that close to the middle one.
 
   std::int64_t slack_us = 0;    ///< Stamps of the two files are that good after moved().
-  std::int64_t earlier_us = 0;  ///< Of a log on the same clock: how much earlier it may be.
+  std::int64_t earlier_us = 0;  ///< A log may be earlier by so much, or later by the slack.
 
   /// Returns a stamp of the second file on the first one's clock.
   std::int64_t moved(std::int64_t time_us) const;

@@ -25,13 +25,13 @@ struct Recorded {
   std::string log;
 };
 
-Recorded recorded(const std::string& scenario) {
+Recorded recorded(const std::string& scenario, std::int64_t length_us = 0) {
   const simulate::Scenario& network = *simulate::find_scenario(scenario);
   simulate::Network made = simulate::make_network(network, {});
   simulate::CaptureRecorder capture(made);
   simulate::TraceRecorder trace(made, network.name);
   simulate::Simulation simulation(std::move(made), {&capture, &trace});
-  simulation.run_until(network.length_us);
+  simulation.run_until(length_us == 0 ? network.length_us : length_us);
   Recorded out{capture.finish(), {}};
   const std::regex other(R"(\s*@\d+\s+\S+\s+[<>]\s+(?!\s|app|power).*)");
   std::istringstream lines(trace::print(trace.file()));
@@ -95,6 +95,16 @@ TEST(AlignLogs, NobodyIsBlamedForTheClockOfALog) {
       EXPECT_EQ(report.verdict, exact.verdict) << scenario << " " << ticks;
       EXPECT_EQ(report.exercised, exact.exercised) << scenario << " " << ticks;
     }
+  }
+}
+
+TEST(AlignLogs, NobodyIsBlamedForItsDrift) {
+  const Recorded run = recorded("timeline", 300'000'000);
+  for (const int ppm : {-200, 50}) {
+    const auto drifted = [&](int tick, const std::string&) {
+      return tick + 400 + static_cast<int>(std::int64_t{tick} * ppm / 1'000'000);
+    };
+    EXPECT_EQ(broken_in(judged({run.capture, retimed(run.log, drifted)})), "") << ppm;
   }
 }
 
