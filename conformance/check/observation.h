@@ -85,6 +85,7 @@ struct BusyTime {
 /// A node as a .rtr log describes it.
 struct LoggedNode {
   std::string name;
+  std::uint32_t file = 0;  ///< Of the log.
   machine::Role role = machine::Role::kMote;
   std::uint16_t id = 0;
   std::uint16_t island = 0;    ///< 0: not said.
@@ -98,6 +99,14 @@ struct LoggedNode {
   std::vector<BusyTime> busy;  ///< In order of their beginning.
   std::vector<std::int64_t> link_acks_us;      ///< When its link told it of an acknowledgement.
   std::vector<std::int64_t> link_failures_us;  ///< When it told that none came.
+};
+
+/// How well the clock of a log is known that lies beside captures.
+struct LogClock {
+  std::uint32_t file = 0;
+  bool known = true;            ///< False: nothing ties it to that of the captures.
+  std::int64_t earlier_us = 0;  ///< Its lines may have come earlier than they say by so much,
+  std::int64_t later_us = 0;    ///< or later.
 };
 
 /// The times between which a frame of a file without stamps must lie, by frames that other files
@@ -180,6 +189,9 @@ struct Run {
   /// Frames of files without stamps that are in order with others, by file and frame. A failure
   /// must be found in each order that these bounds allow.
   std::vector<LoosePlace> loose;
+  /// Logs beside captures. A failure must be found wherever in its bounds a log lies; where its
+  /// clock is not known, also without it.
+  std::vector<LogClock> logs;
   bool order_guessed = false;  ///< It is one of several orders that are tried.
   /// In order of time. What compares times before and after one is inconclusive.
   std::vector<ClockStep> steps;

@@ -11,6 +11,7 @@
 
 #include "conformance/check/align/align_clock.h"
 #include "conformance/check/align/align_frames.h"
+#include "conformance/check/align/align_logs.h"
 #include "conformance/check/align/align_order.h"
 
 namespace rubric::check {
@@ -24,7 +25,8 @@ std::string decimal(double value, int places, const char* unit) {
 
 struct File {
   bool frames = false;  // It is a capture.
-  bool timed = false;   // Some have stamps.
+  bool log = false;
+  bool timed = false;  // Some have stamps.
   bool radio = false;
   bool serial = false;
   bool moved = false;       // It was shifted by frames it shares with another.
@@ -37,15 +39,17 @@ struct File {
 
 class Alignment {
  public:
-  Alignment(Run& run, const AlignOptions& options)
-      : run_(run), options_(options), files_(run.files.size()) {}
+  Alignment(Run& run, const AlignOptions& options, bool own_zero)
+      : run_(run), options_(options), own_zero_(own_zero), files_(run.files.size()) {}
 
   void align() {
     look();
     const auto captures =
         std::count_if(files_.begin(), files_.end(), [](const File& f) { return f.frames; });
-    if (captures < 2) return;
+    const bool logs = captures > 0 && std::ranges::any_of(files_, &File::log);
+    if (captures < 2 && !logs) return;
     sightings_ = sightings_of(run_);
+    if (logs) add_logged(run_, sightings_);
     while (const std::optional<std::uint32_t> next = first_unsettled()) {
       while (settle_one()) continue;
     }
@@ -53,12 +57,16 @@ class Alignment {
     for (std::uint32_t i = 0; i < files_.size(); ++i) {
       if (files_[i].frames && !files_[i].timed) order(i);
     }
+    for (std::uint32_t i = 0; logs && i < files_.size(); ++i) {
+      if (files_[i].log) place_log(i);
+    }
   }
 
  private:
   void look() {
     for (const Observation& seen : run_.seen) {
       const bool radio = seen.kind == Observation::Kind::kRadio;
+      files_[seen.place.file].log = !seen.node.empty();
       if (!seen.node.empty() || !(radio || seen.kind == Observation::Kind::kSerial)) continue;
       File& file = files_[seen.place.file];
       file.frames = true;
@@ -136,6 +144,10 @@ class Alignment {
     }
     files_[b].moved = true;
     run_.slack_us = std::max(run_.slack_us, std::min(fit.slack_us, options_.response_us));
+    say_moved(a, b, fit);
+  }
+
+  void say_moved(std::uint32_t a, std::uint32_t b, const ClockFit& fit) {
     std::string text = run_.files[b] + " is aligned with " + run_.files[a] + " by " +
                        std::to_string(fit.frames) + " common frames: its clock is " +
                        decimal(std::abs(static_cast<double>(fit.offset_us)) / 1e6, 6, "s") +
@@ -166,6 +178,36 @@ class Alignment {
       const bool could = !common.only_a.empty() && !common.only_b.empty();
       if (!some && !could && !apart && !steps) files_[b].clock = files_[a].clock;
     }
+  }
+
+  // Puts a log on the clock of the air's first capture, or of the first one with stamps.
+  void place_log(std::uint32_t b) {
+    const auto timed = std::ranges::find_if(files_, &File::timed);
+    const std::uint32_t a = air_file().value_or(static_cast<std::uint32_t>(timed - files_.begin()));
+    CommonFrames common;
+    bool steps = false;
+    for (std::uint32_t i = 0; timed != files_.end() && i < files_.size(); ++i) {
+      if (!files_[i].timed || files_[i].clock != files_[a].clock) continue;
+      steps = steps || files_[i].stepped;
+      const CommonFrames its = common_frames(run_, sightings_[i], sightings_[b]);
+      common.pairs.insert(common.pairs.end(), its.pairs.begin(), its.pairs.end());
+    }
+    ClockFit fit;
+    if (steps) {
+      fit.why = "a clock steps";
+    } else if (timed != files_.end()) {
+      fit = fit_log(run_, common, options_, own_zero_);
+    } else {
+      fit.why = "no capture has time stamps";
+    }
+    if (fit.clocks == Clocks::kDiffer) {
+      move_log(run_, b, [&](std::int64_t time_us) { return fit.moved(time_us); });
+      say_moved(a, b, fit);
+    } else if (fit.clocks == Clocks::kUnsure) {
+      run_.facts.push_back(run_.files[b] + " is not aligned with " +
+                           run_.files[timed == files_.end() ? 0 : a] + ": " + fit.why);
+    }
+    run_.logs.push_back({b, fit.clocks != Clocks::kUnsure, fit.earlier_us, fit.slack_us});
   }
 
   // Orders a file without stamps among those on the air's clock.
@@ -256,14 +298,15 @@ class Alignment {
 
   Run& run_;
   const AlignOptions& options_;
+  const bool own_zero_;
   std::vector<File> files_;
   std::vector<std::vector<Sighting>> sightings_;
 };
 
 }  // namespace
 
-void align(Run& run, const AlignOptions& options) {
-  if (options.enabled && run.files.size() > 1) Alignment(run, options).align();
+void align(Run& run, const AlignOptions& options, bool own_zero) {
+  if (options.enabled && run.files.size() > 1) Alignment(run, options, own_zero).align();
 }
 
 }  // namespace rubric::check

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <tuple>
+#include <utility>
 
 namespace rubric::check {
 namespace {
@@ -233,6 +235,65 @@ std::string count_text(std::size_t count) {
   return count == 1 ? "1 frame" : std::to_string(count) + " frames";
 }
 
+// The offsets of a clock that let the fewest effects come before their causes.
+class CausalRange {
+ public:
+  explicit CausalRange(const Points& in) {
+    for (const Point& point : in) {
+      const auto lag = static_cast<double>(point.lag_min_us);
+      (point.lag_sign > 0 ? most_ : least_).push_back(point.rest_us - point.lag_sign * lag);
+    }
+    std::sort(least_.begin(), least_.end());
+    std::sort(most_.begin(), most_.end());
+    std::vector<double> edges = least_;
+    edges.insert(edges.end(), most_.begin(), most_.end());
+    for (const double edge : edges) broken = std::min(broken, broken_at(edge));
+    std::erase_if(edges, [&](double edge) { return broken_at(edge) > broken; });
+    if (edges.empty()) return;
+    std::tie(low, high) =
+        std::pair(*std::ranges::min_element(edges), *std::ranges::max_element(edges));
+    // Where nothing bounds one side, the fastest event waited for little.
+    const bool below = !least_.empty() && least_.front() <= low + kTolerated;
+    const bool above = !most_.empty() && most_.back() >= high - kTolerated;
+    likely = below && above ? (low + high) / 2 : above ? high : low;
+    if (!below) low = high - static_cast<double>(kUnwaitedUs);
+    if (!above) high = low + static_cast<double>(kUnwaitedUs);
+  }
+
+  // Returns how many effects come before their causes.
+  std::size_t broken_at(double offset_us) const {
+    const auto late = std::ranges::upper_bound(least_, offset_us + kTolerated);
+    const auto early = std::ranges::lower_bound(most_, offset_us - kTolerated);
+    return static_cast<std::size_t>(least_.end() - late + (early - most_.begin()));
+  }
+
+  // Narrows a range around 0 to where no more of them do.
+  void around_zero(double& from, double& to) const {
+    for (const double edge : least_) {
+      if (edge <= kTolerated) from = std::max(from, std::min(edge, 0.0));
+    }
+    for (const double edge : most_) {
+      if (edge >= -kTolerated) to = std::min(to, std::max(edge, 0.0));
+    }
+  }
+
+  // Returns by how much events contradict each other.
+  double contradiction() const {
+    if (broken == 0 || least_.empty() || most_.empty()) return 0;
+    return std::max(0.0, least_.back() - most_.front());
+  }
+
+  std::size_t broken = SIZE_MAX;
+  double low = 0;
+  double high = 0;
+  double likely = 0;
+
+ private:
+  static constexpr double kTolerated = kRoundedUs;
+  std::vector<double> least_;  // From lines of the log that cause a frame.
+  std::vector<double> most_;   // From those that tell of one.
+};
+
 class Fit {
  public:
   Fit(const Run& run, const CommonFrames& common, const AlignOptions& options)
@@ -249,20 +310,7 @@ class Fit {
                                             : "the frames that are in both repeat, so that each "
                                               "could be another one");
     }
-    if (points_.size() < kFramesMin) {
-      return unsure("only " + count_text(points_.size()) + (points_.size() == 1 ? " is" : " are") +
-                    " in both, and " + std::to_string(kFramesMin) + " are needed");
-    }
-    const std::int64_t width_us = 2 * (options_.response_us + kSlackUs);
-    Tracking(points_, width_us).track();
-    for (const Point& point : points_) {
-      if (point.inlier) in_.push_back(point);
-    }
-    const std::size_t other = densest(points_, width_us).size;
-    if (in_.size() < kFramesMin || 2 * in_.size() <= points_.size() || 2 * other > in_.size()) {
-      return unsure("the " + count_text(points_.size()) +
-                    " that are in both do not lie equally far apart");
-    }
+    if (!find_inliers()) return out_;
     if (!covers()) {
       return unsure("the " + count_text(in_.size()) +
                     " that are in both are fewer than those of the same time that are not");
@@ -270,7 +318,77 @@ class Fit {
     return judge();
   }
 
+  ClockFit fit_log(bool own_zero) {
+    const auto skew_us = static_cast<double>(options_.skew_us);
+    out_.frames = points_.size();
+    set_rests(points_, 0, 0);
+    const CausalRange all(points_);
+    if (!own_zero && at_zero() && (points_.empty() || all.broken_at(0) == all.broken)) {
+      double low = -skew_us;
+      double high = skew_us;
+      all.around_zero(low, high);
+      const double drifted = unseen_drift_us(points_, all);
+      out_.clocks = Clocks::kAgree;
+      out_.earlier_us = std::llround(std::min(high + drifted, skew_us));
+      out_.slack_us = std::llround(std::min(drifted - low, skew_us));
+      return out_;
+    }
+    if (points_.empty()) return unsure("no event is in both");
+    if (!find_inliers()) return out_;
+    const std::int64_t base_us = in_.front().ahead_us;
+    out_.drift = drift_of(in_, base_us);
+    out_.spread_us = quantile(deviations(in_), 0.9);
+    const CausalRange range(in_);
+    if (4 * range.broken > in_.size()) {
+      return unsure("some of the frames that are in both would come before their causes");
+    }
+    const double drifted = unseen_drift_us(in_, range);
+    out_.clocks = Clocks::kDiffer;
+    out_.offset_us = base_us + std::llround(range.likely);
+    out_.earlier_us = std::llround(range.high - range.likely + drifted);
+    out_.slack_us = std::llround(range.likely - range.low + drifted);
+    out_.at_us = in_.front().at_us;
+    out_.frames = in_.size();
+    return out_;
+  }
+
  private:
+  // Returns whether most events of a log come as near their frames as if it had the same clock.
+  bool at_zero() const {
+    const std::int64_t most = options_.response_us + kSlackUs + options_.skew_us;
+    const auto far = std::ranges::count_if(
+        points_, [&](const Point& point) { return std::abs(point.ahead_us) > most; });
+    return 2 * static_cast<std::size_t>(far) <= points_.size();
+  }
+
+  // Returns how far the clocks may have drifted unseen, where events contradict each other.
+  static double unseen_drift_us(const Points& in, const CausalRange& range) {
+    if (in.empty()) return 0;
+    const double most = kDriftMax * static_cast<double>(in.back().at_us - in.front().at_us);
+    return std::min(
+        {range.contradiction(), most, 2 * quantile(deviations(in), 0.9) + kDriftShownUs});
+  }
+
+  // Finds the pairs that agree. Returns false, having said why, if they are too few.
+  bool find_inliers() {
+    if (points_.size() < kFramesMin) {
+      unsure("only " + count_text(points_.size()) + (points_.size() == 1 ? " is" : " are") +
+             " in both, and " + std::to_string(kFramesMin) + " are needed");
+      return false;
+    }
+    const std::int64_t width_us = 2 * (options_.response_us + kSlackUs);
+    Tracking(points_, width_us).track();
+    for (const Point& point : points_) {
+      if (point.inlier) in_.push_back(point);
+    }
+    const std::size_t other = densest(points_, width_us).size;
+    if (in_.size() >= kFramesMin && 2 * in_.size() > points_.size() && 2 * other <= in_.size()) {
+      return true;
+    }
+    unsure("the " + count_text(points_.size()) + " that are in both do not lie equally far apart");
+    return false;
+  }
+
   ClockFit unsure(std::string why) {
     out_.clocks = Clocks::kUnsure;
     out_.why = std::move(why);
@@ -412,6 +530,11 @@ std::int64_t ClockFit::moved(std::int64_t time_us) const {
 
 ClockFit fit_clock(const Run& run, const CommonFrames& common, const AlignOptions& options) {
   return Fit(run, common, options).fit();
+}
+
+ClockFit fit_log(const Run& run, const CommonFrames& common, const AlignOptions& options,
+                 bool own_zero) {
+  return Fit(run, common, options).fit_log(own_zero);
 }
 
 }  // namespace rubric::check

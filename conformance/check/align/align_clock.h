@@ -27,7 +27,8 @@ struct ClockFit {
   std::size_t frames = 0;      ///< Pairs that agree.
   double spread_us = 0;        ///< Nine tenths of them are that close to the middle one.
 
-  std::int64_t slack_us = 0;  ///< Stamps of the two files are that good after moved().
+  std::int64_t slack_us = 0;    ///< Stamps of the two files are that good after moved().
+  std::int64_t earlier_us = 0;  ///< A log may be earlier by so much, or later by the slack.
 
   /// Returns a stamp of the second file on the first one's clock.
   std::int64_t moved(std::int64_t time_us) const;
@@ -35,5 +36,10 @@ struct ClockFit {
 
 /// Fits the clock of the file of `b` to that of the file of `a`. Both have stamps.
 ClockFit fit_clock(const Run& run, const CommonFrames& common, const AlignOptions& options);
+
+/// Fits the clock of a log to that of captures: to where fewest effects come before their causes.
+/// Its own clock is one of these unless it has its `own_zero`.
+ClockFit fit_log(const Run& run, const CommonFrames& common, const AlignOptions& options,
+                 bool own_zero);
 
 }  // namespace rubric::check

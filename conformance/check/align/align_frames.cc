@@ -21,32 +21,9 @@ constexpr std::int64_t kRepeatUs = 500'000;  // The link repeats a frame within 
 constexpr std::uint32_t kRepeatFrames = 8;   // The same without stamps.
 constexpr std::size_t kGroupMax = 32;        // Frames of one key that are told apart by content.
 
-// FNV-1a. Frames with equal keys are compared byte by byte.
-class Hash {
- public:
-  Hash& add(std::uint64_t value, int bytes) {
-    for (int i = 0; i < bytes; ++i) step(static_cast<std::uint8_t>(value >> (8 * i)));
-    return *this;
-  }
-  Hash& add(Bytes bytes) {
-    for (const std::uint8_t byte : bytes) step(byte);
-    return *this;
-  }
-  std::uint64_t value() const { return value_; }
-
- private:
-  void step(std::uint8_t byte) { value_ = (value_ ^ byte) * 0x100000001B3U; }
-  std::uint64_t value_ = 0xCBF29CE484222325U;
-};
-
+// Frames with equal keys are compared byte by byte.
 std::uint64_t key_of(machine::Address mote, const machine::Descriptor& what) {
-  return Hash()
-      .add(mote.pid, 2)
-      .add(mote.devid, 2)
-      .add(what.mote_type, 1)
-      .add(what.transducers, 2)
-      .add(what.actuators, 1)
-      .value();
+  return Hash().add(mote).add(what).value();
 }
 
 // Leaves out nbytes and the bytes after the payload, which differ on a serial line.
@@ -113,7 +90,8 @@ bool fits(const Run& run, Common how, const Sighting& cause, const Sighting& eff
   const Observation& from = run.seen[cause.index];
   const Observation& to = run.seen[effect.index];
   if (how == Common::kSame) return whole(from, to);
-  if (how == Common::kJoined) return true;  // The key is all that they have in common.
+  // The key is all that they have in common.
+  if (how == Common::kJoined || how == Common::kLogged) return true;
   Net on_air;
   Net on_line;
   const bool up = how == Common::kUp;
@@ -128,7 +106,8 @@ bool fits(const Run& run, Common how, const Sighting& cause, const Sighting& eff
 bool repeats(const Run& run, const Sighting& before, const Sighting& after) {
   const Observation& a = run.seen[before.index];
   const Observation& b = run.seen[after.index];
-  if (a.tap != b.tap || !whole(a, b)) return false;
+  const bool frame = a.kind == Kind::kRadio || a.kind == Kind::kSerial;
+  if (!frame || a.tap != b.tap || !whole(a, b)) return false;
   const std::int64_t none = std::min(a.place.time_us, b.place.time_us);
   return none == kNoStamp ? after.index - before.index <= kRepeatFrames
                           : b.place.time_us - a.place.time_us <= kRepeatUs;
@@ -172,7 +151,8 @@ class Pairing {
       const Pair pair = pair_of(how, a[i], b[j], sign);
       (fit_a[i] == 1 && fit_b[j] == 1 ? out_.pairs : out_.guesses).push_back(pair);
     }
-    if (how == Common::kSame) return;  // Another place hears other frames.
+    // Another place hears other frames, and a log is of some nodes.
+    if (how == Common::kSame || how == Common::kLogged) return;
     for (std::size_t i = 0; i < a.size(); ++i) {
       if (fit_a[i] == 0) out_.only_a.push_back(a[i].index);
     }
@@ -194,14 +174,9 @@ class Pairing {
   }
 
   Pair pair_of(Common how, const Sighting& a, const Sighting& b, int sign) const {
-    Pair pair{a.index, b.index, how, sign, 0};
-    const Observation& cause = run_.seen[sign < 0 ? b.index : a.index];
     // Radio stamps mark the start of a frame, serial stamps its end.
-    if (sign != 0 && cause.kind == Kind::kRadio) {
-      const auto bytes = static_cast<std::int64_t>(cause.frame.payload.size()) + kAroundBytes;
-      pair.lag_min_us = bytes * kRadioByteUs;
-    }
-    return pair;
+    const Observation& cause = run_.seen[sign < 0 ? b.index : a.index];
+    return {a.index, b.index, how, sign, sign == 0 ? 0 : air_us(cause)};
   }
 
   const Run& run_;
@@ -228,10 +203,11 @@ std::vector<std::vector<Sighting>> sightings_of(const Run& run) {
   for (std::uint32_t i = 0; i < run.seen.size(); ++i) {
     const Observation& seen = run.seen[i];
     const bool frame = seen.kind == Kind::kRadio || seen.kind == Kind::kSerial;
-    if (!frame || !seen.node.empty()) continue;
+    if (!frame) continue;
     Sighting one;
     one.index = i;
     if (passes(seen, one)) out[seen.place.file].push_back(one);
+    if (!seen.node.empty()) continue;
     out[seen.place.file].push_back({key_of(seen), i, Common::kSame, false});
   }
   return out;

@@ -14,6 +14,7 @@ enum class Common : std::uint8_t {
   kUp,      ///< A net_msg on the air, and on the line of the sink that forwards it (N6-CONTENT).
   kDown,    ///< A net_msg on a line, and on the air, where the sink sends it on (N7-CONTENT).
   kJoined,  ///< An ack_join, and the serial_joined that reports it.
+  kLogged,  ///< A line of a log, and a frame that is its cause or effect (align_logs.h).
 };
 
 /// Frame `a` of the first file and frame `b` of the second, indices into Run::seen. Neither could
@@ -34,6 +35,28 @@ struct CommonFrames {
   std::vector<Pair> guesses;
 };
 
+/// A hash: FNV-1a.
+class Hash {
+ public:
+  Hash& add(std::uint64_t value, int bytes) {
+    for (int i = 0; i < bytes; ++i) step(static_cast<std::uint8_t>(value >> (8 * i)));
+    return *this;
+  }
+  Hash& add(Bytes bytes) {
+    for (const std::uint8_t byte : bytes) step(byte);
+    return *this;
+  }
+  Hash& add(machine::Address address) { return add(address.pid, 2).add(address.devid, 2); }
+  Hash& add(const machine::Descriptor& what) {
+    return add(what.mote_type, 1).add(what.transducers, 2).add(what.actuators, 1);
+  }
+  std::uint64_t value() const { return value_; }
+
+ private:
+  void step(std::uint8_t byte) { value_ = (value_ ^ byte) * 0x100000001B3U; }
+  std::uint64_t value_ = 0xCBF29CE484222325U;
+};
+
 /// A frame that may be in another file as well.
 struct Sighting {
   std::uint64_t key = 0;    ///< Hash of the content that both forms share.
@@ -42,7 +65,7 @@ struct Sighting {
   bool cause = false;
 };
 
-/// Returns the sightings in captures, by file. Lines of .rtr logs have none.
+/// Returns the sightings of frames, by file. Those of logs may pass to a capture's line or air.
 std::vector<std::vector<Sighting>> sightings_of(const Run& run);
 
 /// Returns the pairs among the sightings of two files, and sorts both.

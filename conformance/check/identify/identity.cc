@@ -35,8 +35,8 @@ class Identifier {
     captured_ = !run_.marked || std::any_of(run_.seen.begin(), run_.seen.end(),
                                             [](const auto& seen) { return seen.node.empty(); });
     for (const LoggedNode& node : run_.nodes) add_logged(node);
-    out_.hears_radio = run_.tells_all();
     for (std::uint32_t i = 0; i < run_.seen.size(); ++i) look(i);
+    out_.hears_radio = out_.sees_air || run_.tells_all();
     resolve_streams();
     resolve_lines();
     for (std::uint32_t i = 0; i < run_.seen.size(); ++i) settle(i);
@@ -79,7 +79,7 @@ class Identifier {
     if (!seen.node.empty()) return look_logged(index);
     if (seen.kind == Observation::Kind::kDamaged) out_.damaged_us.push_back(seen.place.time_us);
     if (seen.kind == Observation::Kind::kRadio) {
-      out_.hears_radio = true;
+      out_.sees_air = true;
       if (seen.frame.type == am::kJoin) remember_request(seen);
       roles_.look(seen.frame, index);
       mark.device = streams_.assign(index, mark.repeat);  // A stream so far.
@@ -98,9 +98,10 @@ class Identifier {
     const bool serial = seen.kind == Observation::Kind::kSerial && node != kNobody;
     if (serial && run_.nodes[node].role == Role::kSink) logged_sink_[seen.tap] = node;
     if (serial && run_.nodes[node].role == Role::kBaseStation) logged_host_[seen.tap] = node;
+    if (seen.kind == Observation::Kind::kReboot) reboots_.insert(node);
     if (!seen.received) {
       mark.device = node;
-      if (seen.kind == Observation::Kind::kRadio) out_.hears_radio = true;
+      if (seen.kind == Observation::Kind::kRadio) out_.sees_air = true;
       if (seen.kind == Observation::Kind::kRadio && node != kNobody) {
         Device& device = out_.devices[node];  // A log has all that its node sent.
         device.radio = true;
@@ -195,6 +196,12 @@ class Identifier {
     return found;
   }
 
+  // Returns whether a node that no log names may be blamed. Whole logs have all of their own nodes,
+  // not all that others hear.
+  bool may_be_judged(std::uint16_t am) const {
+    return !run_.marked && !run_.tells_all() && !is_tester(am);
+  }
+
   void resolve_streams() {
     const auto& streams = streams_.all();
     device_of_stream_.assign(streams.size(), kNobody);
@@ -212,7 +219,8 @@ class Identifier {
       const bool named = given_.names(stream.am, stream.plain_island);
       const bool goes_on = before != kNobody && follows(stream, before);
       if (goes_on || (before != kNobody && named && !another)) {
-        starts_life_[i] = goes_on && out_.devices[before].radio && (stream.joins || stream.sink);
+        starts_life_[i] = goes_on && out_.devices[before].radio && (stream.joins || stream.sink) &&
+                          !reboots_.contains(before);
         take_stream(out_.devices[before], stream);
         device_of_stream_[i] = before;
         continue;
@@ -221,7 +229,7 @@ class Identifier {
       device.am = stream.am;
       device.role = role_of(stream);
       device.island = stream.sink ? stream.first_island : std::uint16_t{0};
-      device.judged = !run_.marked && !is_tester(stream.am);
+      device.judged = may_be_judged(stream.am);
       device.known = !is_tester(stream.am) &&
                      (named || ((before == kNobody || another) && !answers_nothing(stream)));
       take_stream(device, stream);
@@ -346,7 +354,7 @@ class Identifier {
         device.am = is_sink ? am : machine::Profile{}.sink_id;
         device.role = Role::kSink;
         device.island = line.first;
-        device.judged = !run_.marked && !is_tester(device.am);
+        device.judged = may_be_judged(device.am);
         sink = add(device);
       }
       const bool logs = owner != logged_sink_.end();
@@ -388,7 +396,7 @@ class Identifier {
     base.role = Role::kBaseStation;
     base.island = island;
     base.partner = sink;
-    base.judged = !run_.marked && !is_tester(0);  // A host's AM source is 0.
+    base.judged = may_be_judged(0);  // A host's AM source is 0.
     const std::uint16_t made = add(base);
     out_.devices[sink].partner = made;
   }
@@ -429,6 +437,7 @@ class Identifier {
   Identity out_;
   std::map<std::uint32_t, std::uint16_t> logged_sink_;  // User of a tap, by a log.
   std::map<std::uint32_t, std::uint16_t> logged_host_;  // The base station at its other end.
+  std::set<std::uint16_t> reboots_;  // Nodes whose log tells that they started anew.
   std::vector<std::uint16_t> device_of_stream_;
   std::vector<bool> starts_life_;
   std::array<std::uint32_t, kRecentFrames> recent_{};  // Observation + 1.

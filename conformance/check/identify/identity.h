@@ -106,7 +106,8 @@ struct Identity {
   std::vector<Contradiction> contradictions;  ///< Between the run and the user.
   std::vector<std::int64_t> damaged_us;       ///< Times of damaged bytes that were a frame once.
 
-  bool hears_radio = false;   ///< Some radio frame was seen at all, or a whole log has them all.
+  bool sees_air = false;      ///< Some radio frame was seen at all.
+  bool hears_radio = false;   ///< So it was, or a whole log has all of them.
   std::int64_t gone_us = -1;  ///< Frames before this are gone: Past::until_us.
 
   /// Returns whether such bytes came between these times.

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <limits>
 
+#include "conformance/check/align/align_logs.h"
 #include "conformance/check/align/steps.h"
 #include "conformance/check/input/read_packet.h"
 #include "conformance/check/input/read_trace.h"
@@ -104,6 +105,38 @@ void stamp_damaged(Run& run) {
   from_the_one_before(run.seen.rbegin(), run.seen.rend());
 }
 
+constexpr std::int64_t kNone = std::numeric_limits<std::int64_t>::max();
+
+// Returns the first stamp of those observations; kNone if there is none.
+template <class Its>
+std::int64_t first_stamp(const std::vector<Observation>& seen, Its its) {
+  std::int64_t first_us = kNone;
+  for (const Observation& one : seen) {
+    if (one.place.time_us != kNoStamp && its(one)) first_us = std::min(first_us, one.place.time_us);
+  }
+  return first_us;
+}
+
+// A log counts from the start of its run. Captures of simulated networks do, too; those of real
+// ones have stamps of this century, and then the log is taken to begin with the capture. Returns
+// whether that is so.
+bool begin_logs(Run& run) {
+  constexpr std::int64_t kTenYearsUs = 315'360'000'000'000;
+  if (run.nodes.empty()) return false;
+  const std::int64_t first_us =
+      first_stamp(run.seen, [](const Observation& seen) { return seen.node.empty(); });
+  if (first_us == kNone) return false;
+  const std::int64_t begin_us = first_us > kTenYearsUs ? first_us : 0;
+  for (Observation& seen : run.seen) {
+    if (seen.node.empty()) continue;
+    seen.place.time_us += begin_us;
+    // A log counts whole ticks: an event happened within the tick that is written.
+    if (seen.kind == Observation::Kind::kNotice) seen.place.time_us += machine::us_of(1);
+  }
+  move_nodes(run, std::nullopt, [&](std::int64_t time_us) { return time_us + begin_us; });
+  return begin_us != 0;
+}
+
 // Makes times count from `begin_us`, else from the first one, and orders what several taps saw.
 Run in_one_order(Run run, const AlignOptions& options, std::optional<std::int64_t>& begin_us) {
   const auto by_file = [](const Observation& a, const Observation& b) {
@@ -113,33 +146,10 @@ Run in_one_order(Run run, const AlignOptions& options, std::optional<std::int64_
     std::stable_sort(run.seen.begin(), run.seen.end(), by_file);
   }
   mend_steps(run);
-  align(run, options);
+  const bool own_zero = begin_logs(run);
+  align(run, options, own_zero);
   stamp_damaged(run);
-  // A log counts from the start of its run. Captures of simulated networks do, too; those of real
-  // ones have stamps of this century, and then the log is taken to begin with the capture.
-  constexpr std::int64_t kTenYearsUs = 315'360'000'000'000;
-  constexpr std::int64_t kNone = std::numeric_limits<std::int64_t>::max();
-  std::int64_t first_us = kNone;
-  bool logged = false;
-  for (const Observation& seen : run.seen) {
-    const std::int64_t time = seen.place.time_us;
-    if (!seen.node.empty()) {
-      logged = true;
-    } else if (time != kNoStamp) {
-      first_us = std::min(first_us, time);
-    }
-  }
-  const std::int64_t logs_us = first_us != kNone && first_us > kTenYearsUs ? first_us : 0;
-  const bool captured = first_us != kNone;
-  if (logged) {  // It takes time to walk through a large capture.
-    for (Observation& seen : run.seen) {
-      if (!seen.node.empty()) seen.place.time_us += logs_us;
-      // A log counts whole ticks: an event happened within the tick that is written.
-      if (captured && seen.kind == Observation::Kind::kNotice)
-        seen.place.time_us += machine::us_of(1);
-      if (seen.place.time_us != kNoStamp) first_us = std::min(first_us, seen.place.time_us);
-    }
-  }
+  std::int64_t first_us = first_stamp(run.seen, [](const Observation&) { return true; });
   if (begin_us) first_us = *begin_us;
   if (first_us != kNone) run.begin_us = *(begin_us = first_us);
   for (Observation& seen : run.seen) {
@@ -153,15 +163,7 @@ Run in_one_order(Run run, const AlignOptions& options, std::optional<std::int64_
     place.early_us -= first_us;
     place.late_us -= first_us;
   }
-  for (LoggedNode& node : run.nodes) {
-    for (BusyTime& busy : node.busy) {
-      busy.from_us += logs_us - first_us;
-      if (busy.to_us != kNone) busy.to_us += logs_us - first_us;
-    }
-    for (std::int64_t& time_us : node.link_acks_us) time_us += logs_us - first_us;
-    for (std::int64_t& time_us : node.link_failures_us) time_us += logs_us - first_us;
-  }
-  if (run.watched_until_us >= 0) run.watched_until_us += logs_us - first_us;
+  move_nodes(run, std::nullopt, [&](std::int64_t time_us) { return time_us - first_us; });
   merge(run);
   return run;
 }

@@ -38,6 +38,7 @@ class LogReader {
       if (!marked || header.iut) take_statement(header);
       LoggedNode node;
       node.name = header.name;
+      node.file = static_cast<std::uint32_t>(run_.files.size() - 1);
       node.role = role_of(header.role);
       node.id = header.id.value_or(0);
       node.island = header.island.value_or(0);

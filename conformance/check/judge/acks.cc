@@ -35,7 +35,8 @@ void Acks::arrived(std::uint16_t node, const Observation& seen, std::uint16_t se
   arrived.weak = net.sound && arrival.weak;
   arrived.ackable = arrived.forbidden == ReqId::kNone &&
                     machine::must_ack(net.reliable == 1, net.dest, net.trans_id, net.app_id);
-  arrived.must_ack = arrived.ackable && !arrival.free;
+  arrived.no_room = arrival.no_room;
+  arrived.must_ack = arrived.ackable && !arrival.free && !arrival.no_room;
   arrived.doubtful = arrival.doubtful;
   const bool known = net.sound && net.reliable <= 1 && net.trans_id == component::kConnless &&
                      machine::is_known_app(net.app_id);
@@ -63,11 +64,15 @@ void Acks::repeated(std::uint16_t node, const Net& net) {
   }
 }
 
-void Acks::surely(std::uint16_t node, const Net& net, std::int64_t now_us, bool may) {
+void Acks::surely(std::uint16_t node, const Net& net, std::int64_t now_us, bool may, bool no_room) {
   Ring<Arrived, kRoom>& ring = arrived_[node];
   for (std::size_t i = 0; i < ring.size(); ++i) {
     Arrived& arrived = ring.newest(i);
     if (!same_message(arrived.net, net)) continue;
+    if (no_room && !arrived.sure) {
+      arrived.no_room = true;
+      arrived.must_ack = false;
+    }
     if (arrived.must_ack && !arrived.sure && arrived.acks == 0) ++owed_[node];
     if (!arrived.sure)
       arrived.order = ++orders_[node].came;  // Others sent later may have come first.
@@ -133,7 +138,8 @@ void Acks::sent(std::uint16_t node, const Observation& seen, const Net& ack) {
   }
   if (best->sure && best->copies == 1) {
     context_.left(node, seen.frame.link, seen.place, best->whole_us,
-                  best->whole_us + context_.response_us(), "the ack of " + name_of(best->net));
+                  context_.handled_us(node, best->whole_us, now),
+                  "the ack of " + name_of(best->net));
     judge_ack_order(node, seen, *best);
   }
   acked_apps_[node].insert(ack.app_id);
@@ -304,7 +310,7 @@ void Acks::delivered(std::uint16_t node, const Observation& seen,
     judge_order(node, seen, *best);
     ++best->delivered;
     const bool owed = best->must_ack && best->sure;
-    best->must_ack = best->must_ack || best->ackable;
+    best->must_ack = best->must_ack || (best->ackable && !best->no_room);
     best->sure = true;  // So it did arrive, and was taken.
     if (best->must_ack && !owed && best->acks == 0) ++owed_[node];
     context_.findings.kept("T1-DELIVER"_rule);

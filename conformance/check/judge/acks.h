@@ -55,6 +55,7 @@ struct Arrived {
   bool weak = false;
   bool must_ack = false;
   bool ackable = false;   ///< Apart from `free`: reliable, and so on.
+  bool no_room = false;   ///< Its ack may have found no room (decision 122).
   bool doubtful = false;  ///< The node may not be a member.
   ReqId delivers =
       ReqId::kNone;         ///< Why the application gets it, if it arrived; kNone: it need not.
@@ -73,6 +74,7 @@ struct Arrival {
   bool free = false;               ///< The node may ignore it.
   bool doubtful = false;           ///< The node may not be a member, and then must ignore it.
   ReqId delivers = ReqId::kNone;   ///< Why the application gets it; kNone: it need not.
+  bool no_room = false;            ///< Messages of its application fill the ack's buffer.
 };
 
 class Acks {
@@ -86,7 +88,7 @@ class Acks {
   void repeated(std::uint16_t node, const Net& net);
   /// Notes that by a log the node received the message.
   /// `may`: it is on then, and may be a member, whatever it was when the message was sent.
-  void surely(std::uint16_t node, const Net& net, std::int64_t now_us, bool may);
+  void surely(std::uint16_t node, const Net& net, std::int64_t now_us, bool may, bool no_room);
   /// Judges an ack that `node` sends as a message of its own.
   void sent(std::uint16_t node, const Observation& seen, const Net& ack);
   /// Judges a message that by a log the application of `node` got.

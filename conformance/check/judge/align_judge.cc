@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "codec/reflect/requirements.h"
+#include "conformance/check/align/align_logs.h"
 #include "conformance/check/input/read.h"
 #include "conformance/check/judge/findings.h"
 #include "conformance/check/judge/judge.h"
@@ -198,6 +199,61 @@ Report judge_each_gap(const Run& run, const Options& options) {
   return report;
 }
 
+// Returns the run without what logs say whose clocks are not known.
+Run without_logs(const Run& run) {
+  Run out = run;
+  for (const LogClock& log : run.logs) {
+    if (log.known) continue;
+    std::erase_if(out.seen, [&](const Observation& seen) { return seen.place.file == log.file; });
+    for (LoggedNode& node : out.nodes) {
+      if (node.file != log.file) continue;
+      node.application = node.hearing = node.logged = node.whole = node.peis = false;
+      node.busy.clear();
+      node.link_acks_us.clear();
+      node.link_failures_us.clear();
+    }
+  }
+  return out;
+}
+
+// Judges a run of captures and logs. A failure or a weak finding remains if it is found wherever
+// the logs may lie, and without those of which nobody knows where; else it becomes inconclusive.
+Report judge_each_log(const Run& run, const Options& options) {
+  const auto judged = [&](Run now) {
+    now.logs.clear();
+    merge(now);
+    now.has_time = run.has_time;
+    now.start_us = run.start_us;
+    now.end_us = std::max(run.end_us, now.end_us);
+    return judge(now, options);
+  };
+  Report report = judged(run);
+  if (std::ranges::none_of(report.findings, blames)) return report;
+  const auto stands_in = [&](const Report& other) {
+    const std::set<Name> blamed = blamed_in(other);
+    for (Finding& finding : report.findings) {
+      if (!blames(finding) || blamed.contains(name_of(finding))) continue;
+      finding.severity = Severity::kInconclusive;
+    }
+  };
+  const auto moved = [&](auto later_us) {
+    Run now = run;
+    for (const LogClock& log : run.logs) {
+      const std::int64_t by_us = later_us(log);
+      move_log(now, log.file, [by_us](std::int64_t time_us) {
+        return std::max<std::int64_t>(0, time_us + by_us);
+      });
+    }
+    return judged(std::move(now));
+  };
+  stands_in(moved([](const LogClock& log) { return -log.earlier_us; }));
+  stands_in(moved([](const LogClock& log) { return (log.later_us - log.earlier_us) / 2; }));
+  stands_in(moved([](const LogClock& log) { return log.later_us; }));
+  if (!std::ranges::all_of(run.logs, &LogClock::known)) stands_in(judged(without_logs(run)));
+  report.verdict = verdict_of(report.findings);
+  return report;
+}
+
 }  // namespace
 
 Report judge(const Run& run, const Options& options) {
@@ -206,6 +262,7 @@ Report judge(const Run& run, const Options& options) {
     known.start_cold = known.sniffer_complete = true;
     return judge(run, known);
   }
+  if (!run.logs.empty()) return judge_each_log(run, options);
   if (!run.loose.empty() || !run.slack_taps.empty()) return judge_each_order(run, options);
   return run.steps.empty() ? Judge(run, options).judge() : judge_each_gap(run, options);
 }

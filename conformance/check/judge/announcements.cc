@@ -86,7 +86,7 @@ void Announcements::announce(SinkWatch& sink, const Place& at, machine::Address 
     watch.report_due = false;
     --sink.debts;
     context_.left(sink.device, machine::Link::kSerial, at, watch.ack_whole_us,
-                  watch.ack_whole_us + context_.response_us(),
+                  context_.handled_us(sink.device, watch.ack_whole_us, at.time_us),
                   "serial_joined of mote " + number(address.devid));
   }
   if (next_.empty()) {
@@ -97,9 +97,19 @@ void Announcements::announce(SinkWatch& sink, const Place& at, machine::Address 
     sink.reported_us = std::max(sink.reported_us, watch.ack.time_us);
   }
   if (stored && *stored != descriptor) {
-    // A sink with one memory for all motes would announce the descriptor of another mote's request.
+    // A sink with one memory for all motes announces the descriptor of another mote's request.
+    const auto others = [&](const auto& other) {
+      const auto has = [&](const SinkHypothesis& h) {
+        return (h.pending && h.pending->descriptor == descriptor) ||
+               (h.member && h.member->descriptor == descriptor);
+      };
+      return other.first != address.devid && other.second.asked && watch.asked &&
+             other.second.request.time_us >= watch.request.time_us &&
+             std::ranges::any_of(other.second.set, has);
+    };
     context_.report(
-        content, Severity::kFail, at, sink.device,
+        std::ranges::any_of(sink.motes, others) ? "J9-INTERLEAVE"_rule : content, Severity::kFail,
+        at, sink.device,
         {"The descriptor of " + text_of(address) + " is announced as type " +
              number(descriptor.mote_type) + ", transducers " + number(descriptor.transducers) +
              ", actuators " + number(descriptor.actuators) + ".",

@@ -123,9 +123,6 @@ void Context::look_up() {
     report(one.requirement, Severity::kInconclusive, run.seen[one.index].place, node,
            {one.text, one.expected, {}});
   }
-  for (const Tap& tap : run.taps) {
-    hears_radio = hears_radio || tap.link == machine::Link::kRadio;
-  }
   lossy_taps = find_lossy_taps(run, who, options);
   lossy_air = who.hears_radio && misses_air(who, options);
   untimed_taps = run.unordered_taps;

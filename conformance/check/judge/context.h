@@ -1,6 +1,7 @@
 // State shared by every part of the judgement: the run, who is who, and how to report.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -34,6 +35,8 @@ inline std::int64_t grown_ms_of(std::uint32_t from_ms, std::uint32_t to_ms,
 }
 
 struct Context {
+  static constexpr std::int64_t kRoundedUs = 2;
+
   Context(const Run& r, const Options& o, const Identity& w, Findings& f)
       : run(r), options(o), who(w), findings(f) {}
   Context(const Context&) = delete;
@@ -43,7 +46,6 @@ struct Context {
   const Options& options;
   const Identity& who;
   Findings& findings;
-  bool hears_radio = false;   ///< Some tap is on the air.
   std::uint16_t sink_am = 1;  ///< AM address of sinks.
   machine::Actions actions;   ///< For the machine's functions; not read here.
 
@@ -75,7 +77,8 @@ struct Context {
     for (std::uint16_t mote = mote_of_am[am]; mote != kNobody; mote = next_of_am[mote]) call(mote);
   }
 
-  std::int64_t early_us() const { return machine::us_of(profile().early_ticks); }
+  /// Returns how early a timer may look (decision 128). Ticks of logs are rounded to microseconds.
+  std::int64_t early_us() const { return machine::us_of(profile().early_ticks) + kRoundedUs; }
   std::int64_t join_period_us() const { return machine::us_of(profile().join_period_ticks); }
   /// Returns how long a joinIsland call takes that sends all its requests.
   std::int64_t join_call_us() const { return profile().join_requests_max * join_period_us(); }
@@ -117,6 +120,12 @@ struct Context {
   /// times. Reports an order in which what was accepted later leaves first (N2-ORDER).
   void left(std::uint16_t node, machine::Link line, const Place& at, std::int64_t from_us,
             std::int64_t to_us, const std::string& what);
+  /// Returns until when what a node had whole is accepted for the line by which it answers now: by
+  /// a log that is not whole it may handle it late (decision 125).
+  std::int64_t handled_us(std::uint16_t node, std::int64_t whole_us, std::int64_t now_us) const {
+    const std::int64_t soon_us = whole_us + response_us();
+    return device(node).whole ? soon_us : std::max(soon_us, now_us);
+  }
   /// Notes that a life of the node begins, with nothing waiting.
   void begin_life(std::uint16_t node);
 

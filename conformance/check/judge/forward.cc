@@ -133,7 +133,8 @@ void Forwarding::judge_order(Line& line, const Passing& passing, const Observati
                      {}});
   } else if (!passing.twin && passing.copies == 1) {
     context_.left(line.sink, seen.frame.link, seen.place, passing.whole_us,
-                  passing.whole_us + context_.response_us(), name_of(passing.net));
+                  context_.handled_us(line.sink, passing.whole_us, seen.place.time_us),
+                  name_of(passing.net));
   }
 }
 
@@ -206,7 +207,7 @@ void Forwarding::refuse_up(Line& line, const Observation& seen, const Net& net) 
                      {}});
     return;
   }
-  if (!(context_.hears_radio || context_.device(line.sink).whole) || line.island == 0) return;
+  if (!(context_.who.sees_air || context_.device(line.sink).whole) || line.island == 0) return;
   for (std::size_t i = 0; i < line.up.size(); ++i) {
     Passing& passing = line.up.newest(i);
     if (passing.net.seq_num != net.seq_num || passing.net.src != net.src) continue;

@@ -121,6 +121,17 @@ void JoinCalls::told(std::uint16_t mote, const Observation& seen, const machine:
   Calls& calls = calls_[mote];
   std::vector<MoteHypothesis>& set = motes_.set(mote);
   const std::int64_t now = seen.place.time_us;
+  const auto elsewhere = [&](const MoteHypothesis& h) {
+    return !h.unknown && h.told && h.join.address.pid != joined.address.pid;
+  };
+  if (joined.success && calls.open == 0 && !set.empty() && std::ranges::all_of(set, elsewhere)) {
+    context_.report("J7-ONE"_rule, Severity::kFail, seen.place, mote,
+                    {"joined(" + text_of(joined.address) + ", SUCCESS) of a mote that has joined " +
+                         text_of(set.back().join.address) + ".",
+                     "One island until it starts anew.",
+                     {}});
+    return;
+  }
   if (calls.logged && calls.open == 0) {
     context_.report("J5-ONCE"_rule, Severity::kFail, seen.place, mote,
                     {std::string("joined(") + (joined.success ? "SUCCESS" : "FAIL") +

@@ -116,7 +116,8 @@ void JoinWatch::answered(std::uint16_t sink, std::uint16_t mote_am, const Place&
     debt.overtaken = debt.overtaken || context_.run.seen[debt.index].place.time_us < asked_us;
   }
   if (asked_us >= 0) {
-    context_.left(sink, machine::Link::kRadio, at, asked_us, asked_us + context_.response_us(),
+    context_.left(sink, machine::Link::kRadio, at, asked_us,
+                  context_.handled_us(sink, asked_us, at.time_us),
                   "the join_reply to mote " + number(mote_am));
   }
   settle(sink, at.time_us, false);
@@ -178,8 +179,12 @@ void JoinWatch::settle(std::uint16_t node, std::int64_t now_us, bool end) {
   if (debts.empty()) return;
   const Device& device = context_.device(node);
   std::erase_if(debts, [&](const Debt& debt) {
-    // A later event of the application may still show whether it is owed.
-    if (now_us <= debt.due_us && (!end || device.hearing)) return false;
+    // A later event of the application may still show whether it is owed. By a log that is not
+    // whole a late reply is legal (decision 125): it is missing once the mote's call is over, or
+    // when a later one was sent.
+    const bool patient = debt.owes == Owes::kReply && device.hearing && !device.whole && !end;
+    const std::int64_t waits_us = patient && !debt.overtaken ? context_.join_call_us() : 0;
+    if (now_us <= debt.due_us + waits_us && (!end || device.hearing)) return false;
     if (!still_owed(node, debt)) return true;
     const std::int64_t from = context_.run.seen[debt.index].place.time_us;
     // At its end a log of what the node was given needs no sign of life; a capture does.

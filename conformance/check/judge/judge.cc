@@ -350,7 +350,7 @@ void Judge::repeated(std::uint32_t index, const Observation& seen, const Mark& m
 void Judge::surely(const Observation& seen, const Mark& mark, const Net& net) {
   if (interfaces_.switched_off(mark.receiver, seen.frame.link)) return;
   acks_.surely(mark.receiver, net, seen.place.time_us,
-               standing(mark.receiver) != Standing::kOutside);
+               standing(mark.receiver) != Standing::kOutside, no_room(mark.receiver, net));
   if (seen.kind == Kind::kRadio) synaptic_.given(mark.receiver, seen, net);
   if (net.is_ack()) originals_.ack_given(mark.receiver, net, seen.place.time_us);
   if (seen.kind == Kind::kRadio) {

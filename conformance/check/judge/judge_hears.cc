@@ -59,6 +59,12 @@ Judge::Standing Judge::standing(std::uint16_t node) const {
   return sure ? Standing::kMember : Standing::kPerhaps;
 }
 
+bool Judge::no_room(std::uint16_t node, const Net& net) const {
+  const bool to_base = net.src.devid == machine::kNullDevid;
+  const bool by_serial = is(node, Role::kBaseStation) || (is(node, Role::kSink) && to_base);
+  return originals_.full(node, by_serial ? machine::Link::kSerial : machine::Link::kRadio);
+}
+
 // Says of a message whether its delivery is owed, free or forbidden, by the rule of its route.
 //= N5-DELIVER: A mote delivers a net_msg, sent or sent on by a node of its island, whose dest is
 //= its island and its own devid or the broadcast devid.
@@ -107,7 +113,8 @@ void Judge::hears(std::uint16_t node, const machine::Router& router, machine::Li
                  standing == Standing::kUnknown,
                  !owed              ? ReqId::kNone
                  : cut && !straight ? "N11-SHORT"_rule
-                                    : route.delivered});
+                                    : route.delivered,
+                 no_room(node, net)});
   if (sure && !off && route.deliver) synaptic_.given(node, seen, net, on);
   const bool exact = net.dest == router.own && owed && !straight && !cut && on && !off;
   if (sure && exact && forbidden == ReqId::kNone && context_.options.start_cold) {

@@ -71,6 +71,8 @@ class Judge {
                   const Mark& mark, const Net& net);
   void hears(std::uint16_t node, const machine::Router& router, machine::Link from,
              const Observation& seen, std::uint16_t sender, const Net& net, bool sure);
+  // Returns whether the ack of a message to the node may find no room.
+  bool no_room(std::uint16_t node, const Net& net) const;
   // Counts an ack at the originator of the acked message.
   void ack_comes(const Net& ack);
   void serial(std::uint32_t index, const Observation& seen, const Mark& mark);

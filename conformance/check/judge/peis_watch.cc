@@ -43,8 +43,10 @@ void PeisWatch::came_up(std::uint16_t base, std::uint16_t island, const Observat
   const machine::Route route =
       machine::route_received(base_station({island, machine::kNullDevid}, context_.sink_am),
                               Link::kSerial, net.dest, net.src);
-  if (route.onward != Onward::kPeis) return;
-  bases_[base].up.push({net, seen.place, surely && net.sound, false});
+  // It may pass a broadcast to every island on, once, or not (decision 114).
+  const bool onward = route.onward == Onward::kPeis;
+  if (!onward && net.dest.pid != machine::kBroadcastPid) return;
+  bases_[base].up.push({net, seen.place, onward && surely && net.sound, false});
 }
 
 void PeisWatch::surely_up(std::uint16_t base, const Net& net, std::int64_t now_us) {
@@ -52,7 +54,7 @@ void PeisWatch::surely_up(std::uint16_t base, const Net& net, std::int64_t now_u
   for (std::size_t i = 0; i < up.size(); ++i) {
     Message& message = up.newest(i);
     if (!same_message(message.net, net)) continue;
-    message.owed = !message.passed && net.sound;
+    message.owed = !message.passed && net.sound && net.dest.pid != machine::kBroadcastPid;
     message.given_us = now_us;
     message.net = net;  // As it was given, perhaps without the bytes after its content.
     return;

@@ -13,7 +13,8 @@ using rubicon::Component;
 
 constexpr std::int64_t kAtOnceUs = 50'000;
 constexpr std::int64_t kCallUs = 50'000;  // What send accepted is in its buffer then.
-constexpr std::size_t kBufferOut = 4;     // Messages; release 1.0's radio.
+constexpr std::size_t kRadioOut = 4;      // Messages that a buffer holds at least (decision 122).
+constexpr std::size_t kSerialOut = 2;
 
 bool known_trans(std::uint8_t trans_id) {
   return trans_id == component::kConnless || trans_id == component::kSynChannel ||
@@ -96,7 +97,7 @@ void Originals::asks_to_join(std::uint16_t node) {
 // Only a log that has all that the node sends shows that a message never left.
 void Originals::ends(std::uint16_t node, std::int64_t end_us, const InterfaceWatch& interfaces) {
   const Device& device = context_.device(node);
-  const bool air = context_.options.sniffer_complete && context_.hears_radio;
+  const bool air = context_.options.sniffer_complete && context_.who.sees_air;
   if (!(device.hearing || air) || !context_.run.has_time) return;
   auto& calls = calls_[node];
   for (std::size_t i = 0; i < calls.size(); ++i) {
@@ -154,9 +155,8 @@ void Originals::told(std::uint16_t node, const Observation& seen,
   }
   call.result = result.seq_num;
   call.told_us = seen.place.time_us;
-  const std::size_t waiting = this->waiting(node);
-  call.full = result.seq_num == machine::kNoSeq && waiting >= kBufferOut;
-  if (result.seq_num == machine::kNoSeq) judge_refused(node, seen, call, waiting);
+  call.full = result.seq_num == machine::kNoSeq && full(node, call.line);
+  if (result.seq_num == machine::kNoSeq) judge_refused(node, seen, call);
   if (call.send->data.size() > machine::kAppDataMax && result.seq_num != machine::kNoSeq) {
     context_.report("N1-SIZE"_rule, Severity::kFail, seen.place, node,
                     {"send returned " + number(result.seq_num) + " for a message of " +
@@ -175,21 +175,25 @@ void Originals::told(std::uint16_t node, const Observation& seen,
   if (call.left) judge_result(node, seen, call);
 }
 
-// Returns how many messages of its application a node accepted and has not sent yet.
-std::size_t Originals::waiting(std::uint16_t node) {
+// Returns how many messages of its application a node accepted for a line and has not sent yet.
+std::size_t Originals::waiting(std::uint16_t node, Link line) const {
   std::size_t count = 0;
   for (std::size_t i = 0; i < calls_[node].size(); ++i) {
     const Call& one = calls_[node].newest(i);
-    if (one.result && *one.result != machine::kNoSeq && !one.left) ++count;
+    const bool accepted = one.result && *one.result != machine::kNoSeq;
+    if (accepted && !one.left && !one.free && one.line == line) ++count;
   }
   return count;
+}
+
+bool Originals::full(std::uint16_t node, Link line) const {
+  return waiting(node, line) >= (line == Link::kRadio ? kRadioOut : kSerialOut);
 }
 
 // Says that send refused a message although fewer of its application's messages waited than a
 // buffer holds. Forwarded ones may have filled it, and awaited acks the room for acks, which nobody
 // states.
-void Originals::judge_refused(std::uint16_t node, const Observation& seen, const Call& call,
-                              std::size_t waiting) {
+void Originals::judge_refused(std::uint16_t node, const Observation& seen, const Call& call) {
   // These it must or may refuse (decision 114).
   const machine::Send& send = *call.send;
   const std::uint16_t devid = send.dest.devid;
@@ -207,7 +211,7 @@ void Originals::judge_refused(std::uint16_t node, const Observation& seen, const
   context_.report(several ? "T4-SEVERAL"_rule : "N1-ROOM"_rule, Severity::kInconclusive, seen.place,
                   node,
                   {"send refused the message to " + text_of(call.send->dest) + " with " +
-                       number(waiting) + " messages of the application waiting.",
+                       number(waiting(node, call.line)) + " messages of the application waiting.",
                    several ? "It is accepted, unless there is no room for another awaited ack."
                            : "It is accepted, unless other messages fill the outgoing buffer.",
                    {}});

@@ -33,6 +33,8 @@ class Originals {
   /// off: then the island of `own` is 0.
   void called(std::uint16_t node, const Observation& seen, const machine::Send& call,
               machine::Address own);
+  /// Returns whether messages of its application may fill the buffer of a line.
+  bool full(std::uint16_t node, machine::Link line) const;
   /// Notes that the island of the node is now another one.
   void moved(std::uint16_t node) { moved_[node] = true; }
   bool has_moved(std::uint16_t node) const { return moved_[node]; }
@@ -95,9 +97,8 @@ class Originals {
                   machine::Link link);
   bool waits(std::uint16_t node, std::int64_t since_us, std::int64_t now_us);
   void judge_missing(std::uint16_t node, Call& call, std::int64_t now_us);
-  std::size_t waiting(std::uint16_t node);
-  void judge_refused(std::uint16_t node, const Observation& seen, const Call& call,
-                     std::size_t waiting);
+  std::size_t waiting(std::uint16_t node, machine::Link line) const;
+  void judge_refused(std::uint16_t node, const Observation& seen, const Call& call);
   void judge_order(std::uint16_t node, const Observation& seen, const Call& later);
   /// Whether a call of its application asked for a message.
   enum class Asked : std::uint8_t { kUnknown, kYes, kNo };

@@ -145,9 +145,10 @@ void Originals::told(std::uint16_t node, const Observation& seen, const machine:
                     {what + " " + ms_text(waited) + " after the message.",
                      "Not before the timeout, " + ms_text(context_.ack_timeout_us()) + ".",
                      {}});
-  } else if (too_late && context_.ack_timeout_stated()) {
+  } else if (too_late) {
     context_.report(
-        "T3-TIMEOUT"_rule, Severity::kFail, seen.place, node,
+        "T3-TIMEOUT"_rule,
+        context_.ack_timeout_stated() ? Severity::kFail : Severity::kInconclusive, seen.place, node,
         {what + " " + ms_text(waited) + " after the message.",
          "receive_ack(failure) at the timeout, " + ms_text(context_.ack_timeout_us()) + ".",
          {}});

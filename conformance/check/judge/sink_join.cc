@@ -473,7 +473,7 @@ void SinkJoins::refuse_reply(SinkWatch& sink, PairWatch& watch, const Observatio
   const auto asks_this = [&](const auto& entry) {
     return entry.first != am && entry.second.asked && entry.second.request_seq == reply.seq_num;
   };
-  if (std::any_of(sink.motes.begin(), sink.motes.end(), asks_this) &&
+  if (reply.mote != am && std::any_of(sink.motes.begin(), sink.motes.end(), asks_this) &&
       reply.seq_num != watch.request_seq) {
     rule = "J3-DEST"_rule;  // Two motes may use the same number, and one request have escaped.
     said.text = "join_reply to AM address " + number(am) +

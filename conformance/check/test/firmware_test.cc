@@ -58,14 +58,16 @@ std::vector<std::string> found_in(const std::string& capture, bool deployed, boo
       capture + '\t' + (deployed ? "deployed" : "paper") + '\t' + (events ? "events" : "capture");
   std::vector<std::string> files = {"spec/captures/firmware/" + capture + ".pcapng"};
   if (events) files.push_back("conformance/check/test/testdata/" + capture + ".app.rtr");
+  AlignOptions one_clock;  // The simulator's, which stamped captures and logs.
+  one_clock.skew_us = 0;
+  RunReader reader(one_clock);
   std::string error;
-  const std::optional<check::Run> read_run = read(files, error);
-  EXPECT_TRUE(read_run) << error;
-  if (!read_run) return {};
+  for (const std::string& file : files) EXPECT_TRUE(reader.add_file(file, error)) << error;
+  const check::Run run_read = reader.finish();
   Options options;
   options.deployed = deployed;
   std::vector<std::string> lines;
-  for (const Finding& finding : judge(*read_run, options).findings) {
+  for (const Finding& finding : judge(run_read, options).findings) {
     EXPECT_FALSE(finding.text.empty());
     EXPECT_FALSE(finding.expected.empty());
     lines.push_back(line_of(run, finding));

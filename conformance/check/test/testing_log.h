@@ -11,13 +11,14 @@
 
 namespace rubric::check {
 
-inline Report judge_log(const std::string& log) {
+inline Report judge_log(const std::string& log, bool sniffer_complete = false) {
   RunReader reader;
   std::string error;
   EXPECT_TRUE(reader.add_bytes("log", log, error)) << error;
   const check::Run run = reader.finish();
   Options options;
   options.start_cold = true;
+  options.sniffer_complete = sniffer_complete;
   return judge(run, options);
 }
 

@@ -110,6 +110,30 @@ TEST(Match, BindsOnFirstUseOnlyWhereAllMatches) {
             "seq_num: expected $q ($q = 8), seen 7");
 }
 
+TEST(Match, NumbersGoRound) {
+  const auto seen = [](const char* seq_num) {
+    return decode(frame(14, std::string(seq_num) + " 01 0043 01"), LinkKind::kRadio);
+  };
+  Bindings bindings;
+  const auto fits = [&](std::int64_t q, const std::string& want, const char* seq_num) {
+    bindings.set("q", Value::of(q));
+    return differences("join_request(seq_num=" + want + " ...)", seen(seq_num), bindings).empty();
+  };
+  EXPECT_TRUE(fits(0xFFFF, "$q+1", "0000"));
+  EXPECT_FALSE(fits(0xFFFF, "$q+1", "0001"));
+  EXPECT_FALSE(fits(0xFFFF, "$q+1", "ffff"));
+  EXPECT_TRUE(fits(0xFFFE, "$q+1..$q+3", "ffff"));
+  EXPECT_TRUE(fits(0xFFFE, "$q+1..$q+3", "0001"));
+  EXPECT_FALSE(fits(0xFFFE, "$q+1..$q+3", "0002"));
+  EXPECT_FALSE(fits(0xFFFE, "$q+1..$q+3", "fffe"));
+  EXPECT_FALSE(fits(0xFFFF, "!$q+1", "0000"));
+  EXPECT_TRUE(fits(0xFFFF, "!$q+1", "0001"));
+  // In what is sent, too.
+  bindings.set("q", Value::of(0xFFFF));
+  const Message sent = message("join_request(seq_num=$q+256 ...)");
+  EXPECT_EQ(substituted(sent.fields.front().value, bindings, {}), Value::of(255));
+}
+
 TEST(Match, Reals) {
   const auto seen = [](float value) {
     return concrete(Message::named("input_value")

@@ -285,5 +285,41 @@ TEST(Results, RulesThatBroke) {
   }));
 }
 
+// Cases of a role that the implementation plays, of another one, and of those that what it states
+// rules out.
+TEST(Results, WhatIsStatedRulesCasesOut) {
+  ImplementationRun run;
+  using machine::Role;
+  run.identity.roles = {Role::kMote, Role::kSink};
+  const auto add = [&](std::vector<Role> roles, const std::string& ruled_out, bool foreign) {
+    CaseRun& one = run.cases.emplace_back();
+    one.roles = std::move(roles);
+    one.ruled_out = ruled_out;
+    one.foreign = foreign || !ruled_out.empty();
+    one.result.verdict = one.foreign ? CaseVerdict::kSkip : CaseVerdict::kPass;
+  };
+  add({Role::kMote}, "", false);
+  add({Role::kMote}, "members=8", true);
+  add({Role::kMote, Role::kSink}, "gone_after=30", true);
+  add({Role::kMote}, "members=8", true);
+  add({Role::kSink}, "", false);
+  add({Role::kBaseStation}, "", true);  // It plays no such role.
+  const RuledOut all = ruled_out(run);
+  EXPECT_EQ(all.all, 5U);
+  EXPECT_EQ(all.left, 2U);
+  EXPECT_EQ(all.by, "gone_after=30 rules out 1, members=8 rules out 2");
+  const RuledOut mote = ruled_out(run, Role::kMote);
+  EXPECT_EQ(mote.all, 4U);
+  EXPECT_EQ(mote.left, 1U);
+  const RuledOut sink = ruled_out(run, Role::kSink);
+  EXPECT_EQ(sink.all, 2U);
+  EXPECT_EQ(sink.left, 1U);
+  EXPECT_EQ(sink.by, "gone_after=30 rules out 1");
+  EXPECT_THAT(incomplete({}, run), HasSubstr("1 of 4 cases of a mote could be tried"));
+  add({Role::kMote}, "", false);
+  add({Role::kMote}, "", false);  // Half of them is enough.
+  EXPECT_EQ(incomplete({}, run), "");
+}
+
 }  // namespace
 }  // namespace rubric::suite
