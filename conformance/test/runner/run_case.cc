@@ -53,7 +53,7 @@ class Run {
       begun_ = true;
       for (const Line* line : case_.lines()) {
         place_ = line->place;
-        if (!work(*line)) break;
+        if (!run_line(*line)) break;
       }
       judge_forbidden(result);
       if ((!unseen_.empty() || unjudged_) && result.verdict < CaseVerdict::kInconclusive) {
@@ -213,13 +213,13 @@ class Run {
     matched(line, {end, 0});
     lost_.previous = true;
     if (!line.label.empty()) lost_.labels.insert(line.label);
-    for (const std::string& name : names_of(line)) {
+    for (const std::string& name : variables_of(line)) {
       if (!bindings_.find(name)) lost_.names.insert(name);
     }
   }
 
   bool names_lost(const Line& line) const {
-    const std::set<std::string> names = names_of(line);
+    const std::set<std::string> names = variables_of(line);
     return std::any_of(names.begin(), names.end(),
                        [&](const std::string& name) { return lost_.names.contains(name); });
   }
@@ -256,7 +256,7 @@ class Run {
   }
 
   // Runs a line. Returns false if the case cannot go on.
-  bool work(const Line& line) {
+  bool run_line(const Line& line) {
     const Timed timed = this->timed(line);
     NodeLog* node = node_of(line);
     if (!node) {  // Faults of a link, and what nodes do that are not under test: for the reader.

@@ -83,8 +83,8 @@ class Work {
       keep_mishaps(attachment, i);
       run_.cases[i] = std::move(one);
       done_[i] = true;
-      for (; told_ < done_.size() && done_[told_]; ++told_) {
-        if (watcher_.worked) watcher_.worked(run_.cases[told_]);
+      for (; reported_ < done_.size() && done_[reported_]; ++reported_) {
+        if (watcher_.case_done) watcher_.case_done(run_.cases[reported_]);
       }
     }
     attachment.finish();
@@ -100,7 +100,7 @@ class Work {
   std::mutex mutex_;
   std::vector<bool> done_;
   std::vector<std::pair<std::size_t, OutsideFault>> mishaps_;
-  std::size_t told_ = 0;
+  std::size_t reported_ = 0;
 };
 
 std::vector<std::uint32_t> lines_of_profile(const trace::File& head, const trace::Case& one) {
