@@ -357,7 +357,7 @@ int run_test(TestOptions options) {
 void add_selection(cli::Command& command, TestOptions& options) {
   command.add_option(
       "TRACES", options.traces,
-      "Golden traces, .rtr files or folders of them (the kit's own)");
+      "Golden traces, .rtr files or folders of them (default: those that were built in)");
   command.add_option("--cases", options.selection.globs, "Run only cases with such names: 'j4.*'")
       .check(cli::given);
   command
