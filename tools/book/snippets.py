@@ -1,4 +1,4 @@
-"""Fenced blocks of Markdown that are worked as they are shown. Each text is worked in a copy of the
+"""Fenced blocks of Markdown that are run as they are shown. Each text is run in a copy of the
 project of its own, from top to bottom:
 
     ```console              each `$ ` line is run by bash; what it prints must be what follows it
@@ -77,7 +77,7 @@ def commands(text):
 
 
 class Place:
-    """A copy of the project in which one text is worked."""
+    """A copy of the project in which one text is run."""
 
     def __init__(self, folder, root, build, prefix=None):
         self.folder = pathlib.Path(folder)

@@ -119,7 +119,7 @@ int judged(const suite::CaseRun& run) {
 }
 
 std::string text_of(const suite::MachineRun& one, std::size_t width) {
-  const report::Sequence sequence = suite::chart(one.run, one.heeds);
+  const report::Sequence sequence = suite::chart(one.run, one.reactions);
   std::string out = text::wrapped(one.run.name + ": ", one.run.comment, width, 2) + "\n";
   if (sequence.rows.empty()) return out + "Nothing was given, and nothing came.\n";
   return out + report::sequence_text(sequence, 2, width);
@@ -150,7 +150,7 @@ void run_chart(const ChartOptions& options) {
     if (picture) {
       const std::string comment = worked.run.comment;
       out += report::sequence_svg(
-          suite::chart(worked.run, worked.heeds),
+          suite::chart(worked.run, worked.reactions),
           {"chart-" + worked.run.name,
            "Sequence chart of " + worked.run.name + (comment.empty() ? "" : ": " + comment)});
     } else {

@@ -247,7 +247,7 @@ suite::SuiteRun work(const TestOptions& options, const suite::Cases& cases, suit
       text.add((all.implementations.empty() ? "" : "\n") +
                suite::opening_text(all, run, worked, how));
     };
-    watcher.worked = [&](const suite::CaseRun& one) {
+    watcher.case_done = [&](const suite::CaseRun& one) {
       text.add(suite::case_text(one, how));
       progress.advance(1);
     };
@@ -255,7 +255,7 @@ suite::SuiteRun work(const TestOptions& options, const suite::Cases& cases, suit
     const suite::ImplementationRun& run = all.implementations.back();
     text.add(suite::story_text(all, run, how) + suite::totals_text(all, run, how));
   }
-  all.stale = suite::untrue(plan.expected, all, cases);
+  all.stale = suite::stale_expectations(plan.expected, all, cases);
   if (earlier) text.add(suite::changes_text(all, *earlier, options.compare, how));
   text.add(suite::closing_text(all, how));
   return all;
@@ -355,8 +355,9 @@ int run_test(TestOptions options) {
 }
 
 void add_selection(cli::Command& command, TestOptions& options) {
-  command.add_option("TRACES", options.traces,
-                     "Golden traces, .rtr files or folders of them (the kit's own)");
+  command.add_option(
+      "TRACES", options.traces,
+      "Golden traces, .rtr files or folders of them (default: those that were built in)");
   command.add_option("--cases", options.selection.globs, "Run only cases with such names: 'j4.*'")
       .check(cli::given);
   command

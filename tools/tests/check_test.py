@@ -6,17 +6,14 @@ tools/tests/expect/text anew instead of comparing with them.
 """
 
 import json
-import os
 import pathlib
-import pty
 import re
 import shlex
-import subprocess
 import sys
 import unittest
 import xml.etree.ElementTree
 
-from testing import FIRMWARE, RUBRIC, Folder as AnyFolder, rubric
+from testing import FIRMWARE, Folder as AnyFolder, on_terminal, rubric
 
 REGENERATE = "--regenerate" in sys.argv and (sys.argv.remove("--regenerate") or True)
 BASESTATION = pathlib.Path("spec/captures/basestation")
@@ -138,18 +135,8 @@ class Text(Folder):
         for env, coloured in [({"TERM": "xterm", "NO_COLOR": ""}, True),
                               ({"TERM": "xterm", "NO_COLOR": "1"}, False),
                               ({"TERM": "dumb", "NO_COLOR": ""}, False)]:
-            ours, theirs = pty.openpty()
-            with subprocess.Popen([RUBRIC, "check", WRONG_SEQ], stdout=theirs,
-                                  env={**os.environ, **env}) as process:
-                os.close(theirs)
-                out = b""
-                try:
-                    while part := os.read(ours, 65536):
-                        out += part
-                except OSError:
-                    pass  # The other end has closed.
-            os.close(ours)
-            self.assertEqual(process.returncode, 1)
+            code, out = on_terminal("check", WRONG_SEQ, env=env)
+            self.assertEqual(code, 1)
             self.assertEqual(b"\033[" in out, coloured, env)
 
     def test_verbose_says_more(self):

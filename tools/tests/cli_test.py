@@ -6,18 +6,15 @@ Usage: cli_test.py RUBRIC.
 
 import csv
 import datetime
-import fcntl
 import io
 import json
 import os
 import pty
-import struct
 import subprocess
 import tempfile
-import termios
 import unittest
 
-from testing import FIRMWARE, RUBRIC, run
+from testing import FIRMWARE, RUBRIC, on_terminal, run
 
 JOIN = FIRMWARE / "a_join_data.pcapng"
 SERIAL = FIRMWARE / "a_join_data.serial.bin"
@@ -273,14 +270,8 @@ class Terminals(unittest.TestCase):
             os.close(leader)
 
     def on_terminal(self, env, *words, width=0):
-        leader, follower = pty.openpty()
-        fcntl.ioctl(follower, termios.TIOCSWINSZ, struct.pack("HHHH", 24, width, 0, 0))
-        environment = {k: v for k, v in os.environ.items() if k != "NO_COLOR"} | env
-        subprocess.run([RUBRIC, "decode", str(JOIN), "--count", "1", *words], stdout=follower,
-                       stdin=subprocess.DEVNULL, check=True, env=environment)
-        os.close(follower)
-        shown = os.read(leader, 65536)
-        os.close(leader)
+        code, shown = on_terminal("decode", JOIN, "--count", "1", *words, env=env, width=width)
+        self.assertEqual(code, 0)
         return shown
 
     def test_a_closed_pipe_ends_it_quietly(self):

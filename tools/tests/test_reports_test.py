@@ -5,15 +5,12 @@ Usage: test_reports_test.py RUBRIC in the project's folder.
 """
 
 import json
-import os
-import pty
 import re
-import subprocess
 import unittest
 import xml.etree.ElementTree
 
 from test_testing import CASES, HONEST, Folder, rubric, test
-from testing import RUBRIC
+from testing import on_terminal
 
 
 class Expectations(Folder):
@@ -179,18 +176,8 @@ class Formats(Folder):
         self.assertIn("\033[32mpass\033[0m", rubric(*args, "--color", "always")[1])
         for env, coloured in [({"TERM": "xterm", "NO_COLOR": ""}, True),
                               ({"TERM": "xterm", "NO_COLOR": "1"}, False)]:
-            ours, theirs = pty.openpty()
-            with subprocess.Popen([RUBRIC, *args], stdout=theirs,
-                                  env={**os.environ, **env}) as process:
-                os.close(theirs)
-                out = b""
-                try:
-                    while part := os.read(ours, 65536):
-                        out += part
-                except OSError:
-                    pass  # The other end has closed.
-            os.close(ours)
-            self.assertEqual(process.returncode, 0)
+            code, out = on_terminal(*args, env=env)
+            self.assertEqual(code, 0)
             self.assertEqual(b"\033[" in out, coloured, env)
 
 

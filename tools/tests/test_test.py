@@ -220,7 +220,7 @@ class Running(Folder):
         code, out, _ = test("--target", partial, "--role", "mote", "--requirement", "J8")
         self.assertEqual(code, 3)
         self.assertNotRegex(out, "(?m)^inconclusive ")
-        self.assertRegex(out, r"What is attached decides 0 of \d+ cases; the others need radio as")
+        self.assertRegex(out, r"The attached links decide 0 of \d+ cases; the others need radio as")
         self.assertRegex(out, r"INCONCLUSIVE \d+ cases: the target does not show radio")
         code, _, err = test("--target", HONEST, "--app", "true")
         self.assertEqual(code, 64)

@@ -1,10 +1,14 @@
 """Helpers of the tests of commands: the program, which is their first argument, and a folder."""
 
+import fcntl
 import os
 import pathlib
+import pty
+import struct
 import subprocess
 import sys
 import tempfile
+import termios
 import unittest
 
 RUBRIC = str(pathlib.Path(sys.argv.pop(1)).resolve())
@@ -30,6 +34,24 @@ def rubric(*words, stdin="", **how):
     data = stdin if isinstance(stdin, bytes) else stdin.encode()
     done = run(*words, input=data, **how)
     return done.returncode, done.stdout.decode(), done.stderr.decode()
+
+
+def on_terminal(*words, env, width=0):
+    """Runs the program with a terminal as its stdout. Returns exit code and output."""
+    ours, theirs = pty.openpty()
+    fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", 24, width, 0, 0))
+    environment = {k: v for k, v in os.environ.items() if k != "NO_COLOR"} | env
+    with subprocess.Popen([RUBRIC, *map(str, words)], stdin=subprocess.DEVNULL, stdout=theirs,
+                          env=environment) as process:
+        os.close(theirs)
+        out = b""
+        try:
+            while part := os.read(ours, 65536):
+                out += part
+        except OSError:
+            pass  # The other end has closed.
+    os.close(ours)
+    return process.returncode, out
 
 
 class Folder(unittest.TestCase):

@@ -276,7 +276,7 @@ def main():
     found += folder_breaches(files)
     for breach in found:
         print(breach)
-    print(f"{len(files)} files, {len(found)} breaches")
+    print(f"{len(files)} files, {len(found)} mistakes")
     return 1 if found or not files else 0
 
 

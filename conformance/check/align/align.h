@@ -7,7 +7,7 @@
 // Decides: for each file with stamps, how far its clock is ahead of the first one's and how fast
 // that changes, or that nothing tells. For each frame of a file without stamps, between which times
 // it lies (Run::loose). And later, which findings stand in every order that is left
-// (align_judge.cc).
+// (judge/align_judge.cc).
 //
 // Evidence: frames that pass between two files (align_frames.h): the same frame of the same air or
 // line, a net_msg on the air and on the line of a sink that passes it, an ack_join and its

@@ -39,12 +39,12 @@ bool is_about(const KnownFailure& one, const check::Run& run, const Finding& fin
 
 }  // namespace
 
-std::string_view came_name(Came came) {
-  switch (came) {
-    case Came::kTrue: return "matched";
-    case Came::kStale: return "stale";
-    case Came::kOtherMessage: return "other_message";
-    case Came::kNotAsked: return "not_applicable";
+std::string_view state_name(ExpectationState state) {
+  switch (state) {
+    case ExpectationState::kMatched: return "matched";
+    case ExpectationState::kStale: return "stale";
+    case ExpectationState::kOtherMessage: return "other_message";
+    case ExpectationState::kNotApplicable: return "not_applicable";
   }
   return "not_applicable";
 }
@@ -74,11 +74,15 @@ Outcome compare(const check::Run& run, const check::Options& options, const chec
         (same ? result.findings : others).push_back(i);
         if (same && out.expected_by[i] == kUnexpected) out.expected_by[i] = e;
       }
-      result.came = !result.findings.empty() ? Came::kTrue
-                    : others.empty()         ? Came::kStale
-                                             : Came::kOtherMessage;
+      if (!result.findings.empty()) {
+        result.state = ExpectationState::kMatched;
+      } else if (others.empty()) {
+        result.state = ExpectationState::kStale;
+      } else {
+        result.state = ExpectationState::kOtherMessage;
+      }
       if (result.findings.empty()) result.findings = std::move(others);
-      if (result.came != Came::kTrue) ++out.broken_expectations;
+      if (result.state != ExpectationState::kMatched) ++out.broken_expectations;
     }
     out.results.push_back(std::move(result));
   }

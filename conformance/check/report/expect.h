@@ -1,4 +1,4 @@
-// What became of the failures that a report was expected to show.
+// Compares a report with the failures that were expected of it.
 #pragma once
 
 #include <cstdint>
@@ -11,18 +11,18 @@
 
 namespace rubric::report {
 
-/// What an expectation came to.
-enum class Came : std::uint8_t {
-  kTrue,          ///< A failure is just so.
-  kStale,         ///< Nothing failed that way any more.
-  kOtherMessage,  ///< It fails, but says something else.
-  kNotAsked,      ///< It is about another file or profile.
+/// Whether an expectation holds.
+enum class ExpectationState : std::uint8_t {
+  kMatched,        ///< A failure is just so.
+  kStale,          ///< Nothing failed that way any more.
+  kOtherMessage,   ///< It fails, but says something else.
+  kNotApplicable,  ///< It is about another file or profile.
 };
 /// Returns "matched", "stale", "other_message", "not_applicable".
-std::string_view came_name(Came came);
+std::string_view state_name(ExpectationState state);
 
 struct ExpectationResult {
-  Came came = Came::kNotAsked;
+  ExpectationState state = ExpectationState::kNotApplicable;
   std::vector<std::size_t> findings;  ///< Those that match; with kOtherMessage those that do not.
 };
 

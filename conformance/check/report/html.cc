@@ -22,8 +22,8 @@ constexpr std::string_view kHead =
     "<meta name=\"referrer\" content=\"no-referrer\">\n"
     "<meta name=\"color-scheme\" content=\"light dark\">\n<link rel=\"icon\" href=\"data:,\">\n"
     "<title>Rubric check</title>\n<style>\n";
-// What the page of `rubric test` has no need of.
-constexpr std::string_view kMore =
+// Styles that only this page needs; the others are those of `rubric test`.
+constexpr std::string_view kOwnStyles =
     "details { border-top: 1px solid var(--line); padding: .4em 0; }\n"
     "summary { cursor: pointer; overflow-wrap: anywhere; }\n"
     "pre { overflow-x: auto; background: var(--panel); padding: .6em 1em; }\n"
@@ -70,7 +70,7 @@ std::string html_report(const Story& story, const TextOptions& options, std::str
   const check::Report& found = story.report;
   std::string out(kHead);
   out += style;
-  out += kMore;
+  out += kOwnStyles;
   out +=
       "</style>\n</head>\n<body>\n<header class=\"top\"><h1>Rubric <span>check</span></h1>"
       "</header>\n<main id=\"main\">\n";

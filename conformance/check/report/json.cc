@@ -39,7 +39,7 @@ text::Json expectation_json(const Story& story, std::size_t e) {
                              {"line", one.line},
                              {"message", one.message},
                              {"reason", one.reason},
-                             {"came", came_name(result.came)},
+                             {"came", state_name(result.state)},
                              {"findings", text::Json::array(result.findings)}});
 }
 

@@ -14,7 +14,7 @@ namespace {
 using check::Finding;
 using check::Severity;
 
-/// What is said of one rule.
+/// The findings about one rule.
 struct RuleFindings {
   std::uint64_t kept = 0;
   std::vector<std::size_t> failures;
@@ -41,7 +41,8 @@ class Junit {
                              .message = "Input is damaged or missing; the rest was judged."});
     }
     for (std::size_t e = 0; e < story_.outcome.results.size(); ++e) {
-      if (story_.outcome.results[e].came != Came::kNotAsked) suite.cases.push_back(expectation(e));
+      if (story_.outcome.results[e].state != ExpectationState::kNotApplicable)
+        suite.cases.push_back(expectation(e));
     }
     for (const std::string& fact : story_.report.facts) suite.output += fact + "\n";
     return junit_document({suite});
@@ -125,10 +126,10 @@ class Junit {
     const KnownFailure& one = story_.expected.entries[e];
     JunitCase out{.class_name = "rubric.check.expectations"};
     out.name = fmt::format("{}:{} {} {}", story_.expected.name, one.line, one.requirement, e + 1);
-    if (result.came == Came::kTrue) return out;
-    const bool stale = result.came == Came::kStale;
+    if (result.state == ExpectationState::kMatched) return out;
+    const bool stale = result.state == ExpectationState::kStale;
     out.outcome = JunitCase::Outcome::kFailure;
-    out.type = came_name(result.came);
+    out.type = state_name(result.state);
     out.message =
         stale ? fmt::format("{} does not fail with \"{}\" any more", one.requirement, one.message)
               : fmt::format("expected \"{}\", but it says: {}", one.message,

@@ -111,19 +111,19 @@ struct Row {
   const char* name;
   const char* more;  // Keys beside requirement, message and reason.
   const char* message;
-  Came came;
+  ExpectationState state;
   int code;
 };
 const Row kRows[] = {
-    {"Match", "", "wrong number", Came::kTrue, 0},
-    {"MatchOfNode", "node: mote 2", "wrong number", Came::kTrue, 0},
-    {"MatchOfFile", "file: 'a.*'", "wrong number", Came::kTrue, 0},
-    {"MatchOfPath", "file: 'folder/*'", "wrong number", Came::kTrue, 0},
-    {"MatchOfProfile", "profile: paper", "wrong number", Came::kTrue, 0},
-    {"OtherMessage", "", "another number", Came::kOtherMessage, 1},
-    {"OtherNode", "node: mote 3", "wrong number", Came::kStale, 1},
-    {"OtherFile", "file: b.pcapng", "wrong number", Came::kNotAsked, 1},
-    {"OtherProfile", "profile: deployed", "wrong number", Came::kNotAsked, 1},
+    {"Match", "", "wrong number", ExpectationState::kMatched, 0},
+    {"MatchOfNode", "node: mote 2", "wrong number", ExpectationState::kMatched, 0},
+    {"MatchOfFile", "file: 'a.*'", "wrong number", ExpectationState::kMatched, 0},
+    {"MatchOfPath", "file: 'folder/*'", "wrong number", ExpectationState::kMatched, 0},
+    {"MatchOfProfile", "profile: paper", "wrong number", ExpectationState::kMatched, 0},
+    {"OtherMessage", "", "another number", ExpectationState::kOtherMessage, 1},
+    {"OtherNode", "node: mote 3", "wrong number", ExpectationState::kStale, 1},
+    {"OtherFile", "file: b.pcapng", "wrong number", ExpectationState::kNotApplicable, 1},
+    {"OtherProfile", "profile: deployed", "wrong number", ExpectationState::kNotApplicable, 1},
 };
 
 TEST(Expectations, OfAFailure) {
@@ -135,9 +135,10 @@ TEST(Expectations, OfAFailure) {
     text += std::string(row.message) + "\n";
     if (*row.more != '\0') text += std::string("  ") + row.more + "\n";
     const Outcome outcome = compare(run, {}, report, expecting(text));
-    EXPECT_EQ(came_name(outcome.results[0].came), came_name(row.came)) << row.name;
+    EXPECT_EQ(state_name(outcome.results[0].state), state_name(row.state)) << row.name;
     EXPECT_EQ(outcome.exit_code(), row.code) << row.name;
-    EXPECT_EQ(outcome.unexpected_failures, row.came == Came::kTrue ? 0u : 1u) << row.name;
+    EXPECT_EQ(outcome.unexpected_failures, row.state == ExpectationState::kMatched ? 0u : 1u)
+        << row.name;
   }
 }
 
@@ -147,7 +148,7 @@ TEST(Expectations, AreOfFailuresAlone) {
   const Outcome outcome =
       compare(run_of(9), {}, report,
               expecting("- {requirement: J4-SEQ, message: a wrong number, reason: r}"));
-  EXPECT_EQ(outcome.results[0].came, Came::kStale);
+  EXPECT_EQ(outcome.results[0].state, ExpectationState::kStale);
   EXPECT_EQ(outcome.exit_code(), 1);
 }
 
@@ -156,7 +157,7 @@ TEST(Expectations, OneKnownFailureLeavesOthersUnexpected) {
                                           finding("J4-SEQ"_rule, Severity::kFail, 5, "that")});
   const Outcome outcome = compare(run_of(9), {}, report,
                                   expecting("- {requirement: J4-SEQ, message: this, reason: r}"));
-  EXPECT_EQ(outcome.results[0].came, Came::kTrue);
+  EXPECT_EQ(outcome.results[0].state, ExpectationState::kMatched);
   EXPECT_EQ(outcome.expected_by, (std::vector<std::size_t>{0, kUnexpected}));
   EXPECT_EQ(outcome.exit_code(), 1);
 }

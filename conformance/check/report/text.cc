@@ -289,13 +289,13 @@ class TextReport {
       const ExpectationResult& result = story_.outcome.results[e];
       const KnownFailure& one = story_.expected.entries[e];
       const std::string place = fmt::format("{}:{}", story_.expected.name, one.line);
-      if (result.came == Came::kStale) {
+      if (result.state == ExpectationState::kStale) {
         out_ += '\n';
         styled_line("1;31", "STALE",
                     fmt::format("{}: {} does not fail with \"{}\" any more. If that is meant, "
                                 "delete the expectation.",
                                 place, one.requirement, one.message));
-      } else if (result.came == Came::kOtherMessage) {
+      } else if (result.state == ExpectationState::kOtherMessage) {
         const Finding& finding = story_.report.findings[result.findings.front()];
         out_ += '\n';
         styled_line("1;31", "OTHER MESSAGE",

@@ -1,4 +1,4 @@
-// What a report calls a failure, as text that tests compare.
+// The failures of a report as text, for tests to compare.
 #pragma once
 
 #include <set>

@@ -33,7 +33,7 @@ namespace {
 constexpr std::int64_t kSecondUs = 1'000'000;
 constexpr std::size_t kJudgeEvery = 40;  // Frames.
 
-// What a finding says, without its words: rule, severity, node, frames, how often.
+// A finding without its text: rule, severity, node, frames, count.
 using Name =
     std::tuple<std::string, Severity, std::string, std::uint64_t, std::uint64_t, std::uint32_t>;
 

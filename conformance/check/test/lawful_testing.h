@@ -1,4 +1,4 @@
-// What lawful traffic states, for tests that judge it.
+// Options under which tests judge lawful traffic.
 #pragma once
 
 #include "conformance/check/judge/judge.h"

@@ -1,5 +1,5 @@
-// What a node's own log shows that it owes and never gives: deliveries, acks, messages of its
-// own and events. Logs with what the node was given and with its application.
+// Deliveries, acks, events and messages of its own that a node owes by its own log and never gives.
+// The logs have what the node was given, and its application.
 #include <gtest/gtest.h>
 
 #include <string>

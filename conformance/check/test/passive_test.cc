@@ -1,5 +1,5 @@
-// What a capture alone shows: a violator, and nodes that are prompt, slow, late or unlucky and keep
-// the rule.
+// Captures alone, without a log: a node that breaks a rule is found, and nodes that are prompt,
+// slow, late or unlucky but keep it are not blamed.
 #include <gtest/gtest.h>
 
 #include <functional>

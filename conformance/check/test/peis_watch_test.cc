@@ -116,7 +116,7 @@ TEST(PeisWatch, ToTheIslandThatIsMeant) {
   EXPECT_EQ(fails(up(1000, kToPc) + at(1025, "bA > peis am=11->13 " + kToPc)), "N8-PEIS");
 }
 
-// What is odd about a message that has no business on PEIS has that one cause.
+// A message that must not be on PEIS at all is one finding, however many of its fields are odd.
 TEST(PeisWatch, WhatNothingMayPutThereIsOneFinding) {
   const std::string own = "am(28 x000b0002000bfffd010077040305beef)";
   const std::string once = at(1025, "bA > peis am=11->11 " + own);

@@ -36,5 +36,24 @@ inline std::string found(const std::string& log, Severity least) {
 inline std::string at(int ms, const std::string& rest) {
   return "   @" + std::to_string(ms) + " " + rest + "\n";
 }
+inline std::string m2(int ms, const std::string& rest) { return at(ms, "m2 " + rest); }
+
+/// A log in which mote 2 has joined the sink of island 11; what follows comes from 12 ms on.
+inline constexpr const char* kJoined = R"(%rtr 1  %profile paper  %tick ms
+%node m2 mote id=2
+%node m3 mote id=3
+%node sA sink id=1 island=11
+
+case log
+   @0 m2 < app join(type=1 transducers=1 actuators=1)
+   @1 m2 > rA am=2->1 join_request(seq_num=5 mote_type=1 transducers=1 actuators=1)
+   @2 sA < rA am=2->1 join_request(seq_num=5 mote_type=1 transducers=1 actuators=1)
+   @5 sA > rA am=1->2 join_reply(island_addr=11 mote_addr=2 cur_time=5 seq_num=5)
+   @7 m2 < rA am=1->2 join_reply(island_addr=11 mote_addr=2 cur_time=5 seq_num=5)
+   @9 m2 > rA am=2->1 ack_join(dest=11:1 src=11:2 seq_num=5 mote_type=1 transducers=1 actuators=1)
+   @9 m2 > app joined(11:2 success)
+   @11 sA < rA am=2->1 ack_join(dest=11:1 src=11:2 seq_num=5 mote_type=1 transducers=1 actuators=1)
+   @11 sA > app mote_joined(11:2 type=1 transducers=1 actuators=1)
+)";
 
 }  // namespace rubric::check

@@ -1,4 +1,4 @@
-// What a message wraps, against the calls of its application: logs with the calls.
+// Messages within messages must be what the application's calls asked for: logs with the calls.
 #include <gtest/gtest.h>
 
 #include <string>

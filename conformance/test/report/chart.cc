@@ -27,34 +27,34 @@ using trace::Value;
 // The machine, recording its reaction to each stimulus.
 class Watched : public runner::SubjectTarget {
  public:
-  explicit Watched(std::vector<Heed>& heeds)
-      : SubjectTarget(std::make_unique<runner::Machine>()), heeds_(heeds) {}
+  explicit Watched(std::vector<Reaction>& reactions)
+      : SubjectTarget(std::make_unique<runner::Machine>()), reactions_(reactions) {}
 
   void give(runner::Ticks now, const machine::Event& event) override {
     while (run_until(now) < now) {  // Earlier output is no reaction to this.
     }
     const std::size_t before = labels().size();
     SubjectTarget::give(now, event);
-    Heed heed;
+    Reaction reaction;
     bool acted = false;
     for (std::size_t i = before; i < labels().size(); ++i) {
       const Action& action = labels()[i];
       if (action.what == Action::What::kIgnored) {
-        heed.is_ignored = true;
-        heed.ignored.push_back(action.requirement);
+        reaction.is_ignored = true;
+        reaction.ignored.push_back(action.requirement);
       } else if (action.what == Action::What::kFollowed) {
         acted = true;
-        heed.followed.push_back(action.requirement);
+        reaction.followed.push_back(action.requirement);
       } else {
         acted = true;
       }
     }
-    heed.is_ignored = heed.is_ignored && !acted;
-    heeds_.push_back(std::move(heed));
+    reaction.is_ignored = reaction.is_ignored && !acted;
+    reactions_.push_back(std::move(reaction));
   }
 
  private:
-  std::vector<Heed>& heeds_;
+  std::vector<Reaction>& reactions_;
 };
 
 std::string tail_of(const std::string& path) { return path.substr(path.rfind('.') + 1); }
@@ -153,12 +153,12 @@ void add_note(std::string& note, const std::string& more) {
 /// Makes the rows of a log, in its order.
 class Chart {
  public:
-  Chart(const CaseRun& one, const Heeds& heeds, Stage::Apps apps = Stage::Apps::kAlone)
-      : one_(one), heeds_(heeds), stage_(one, apps), lines_(one.result.log.lines()) {}
+  Chart(const CaseRun& one, const Reactions& reactions, Stage::Apps apps = Stage::Apps::kAlone)
+      : one_(one), reactions_(reactions), stage_(one, apps), lines_(one.result.log.lines()) {}
 
   report::Sequence take(bool with_failures = false) {
     const std::vector<std::size_t> before = first_seen(lines_, true);
-    find_heeds();
+    find_reactions();
     find_links();
     rows_of_.assign(lines_.size(), kNoLine);
     for (std::size_t i = 0; i < lines_.size(); ++i) {
@@ -182,15 +182,15 @@ class Chart {
   }
 
  private:
-  void find_heeds() {
+  void find_reactions() {
     std::map<std::string, std::size_t, std::less<>> next;
-    heed_of_.assign(lines_.size(), nullptr);
+    reaction_of_.assign(lines_.size(), nullptr);
     for (std::size_t i = 0; i < lines_.size(); ++i) {
       if (lines_[i]->op != Op::kGiven) continue;
-      const auto found = heeds_.find(lines_[i]->node);
-      if (found == heeds_.end()) continue;
+      const auto found = reactions_.find(lines_[i]->node);
+      if (found == reactions_.end()) continue;
       const std::size_t at = next[lines_[i]->node]++;
-      if (at < found->second.size()) heed_of_[i] = &found->second[at];
+      if (at < found->second.size()) reaction_of_[i] = &found->second[at];
     }
   }
 
@@ -258,12 +258,12 @@ class Chart {
   void complete(std::size_t at) {
     SequenceRow& row = rows_[at];
     for (const std::size_t i : takers_[at]) {
-      const Heed* heed = heed_of_[i];
-      if (heed == nullptr) continue;
-      add_note(row.note, rules_text(heed->followed));
-      if (heed->ignored.empty()) continue;
-      if (heed->is_ignored) row.ignored_by.push_back(stage_.column(lines_[i]->node));
-      const std::string rules = rules_text(heed->ignored);
+      const Reaction* reaction = reaction_of_[i];
+      if (reaction == nullptr) continue;
+      add_note(row.note, rules_text(reaction->followed));
+      if (reaction->ignored.empty()) continue;
+      if (reaction->is_ignored) row.ignored_by.push_back(stage_.column(lines_[i]->node));
+      const std::string rules = rules_text(reaction->ignored);
       const std::string who = row.to.size() > 1 ? " by " + lines_[i]->node : "";
       add_note(row.note, "ignored" + who + (rules.empty() ? "" : ": " + rules));
     }
@@ -331,10 +331,10 @@ class Chart {
   }
 
   const CaseRun& one_;
-  const Heeds& heeds_;
+  const Reactions& reactions_;
   const Stage stage_;
   const std::vector<const Line*> lines_;
-  std::vector<const Heed*> heed_of_;
+  std::vector<const Reaction*> reaction_of_;
   std::map<std::string, std::set<std::size_t>, std::less<>> on_link_;
   std::vector<std::size_t> rows_of_;
   std::vector<SequenceRow> rows_;
@@ -349,7 +349,7 @@ MachineRun run_on_machine(const SuiteCase& one) {
   out.run.result =
       runner::run_case(one.file->file, *one.one,
                        [&](const trace::NodeHeader& node) -> std::unique_ptr<runner::Target> {
-                         return std::make_unique<Watched>(out.heeds[node.name]);
+                         return std::make_unique<Watched>(out.reactions[node.name]);
                        });
   return out;
 }
@@ -442,7 +442,9 @@ std::string key_text(const trace::Message& message, std::size_t length_max) {
   return cut(std::move(out), length_max);
 }
 
-report::Sequence chart(const CaseRun& one, const Heeds& heeds) { return Chart(one, heeds).take(); }
+report::Sequence chart(const CaseRun& one, const Reactions& reactions) {
+  return Chart(one, reactions).take();
+}
 
 report::Sequence failure_chart(const CaseRun& one) { return Chart(one, {}).take(true); }
 

@@ -13,17 +13,17 @@
 namespace rubric::suite {
 
 /// The reference machine's reaction to something that it was given.
-struct Heed {
+struct Reaction {
   std::vector<ReqId> followed;  ///< Rules that it kept without a word.
   std::vector<ReqId> ignored;   ///< Rules by which nothing came of it; kNone: not for this node.
   bool is_ignored = false;
 };
 /// By node name: one for each line that the node was given, in order.
-using Heeds = std::map<std::string, std::vector<Heed>, std::less<>>;
+using Reactions = std::map<std::string, std::vector<Reaction>, std::less<>>;
 
 struct MachineRun {
   CaseRun run;
-  Heeds heeds;
+  Reactions reactions;
 };
 /// Runs the case on the reference machine.
 MachineRun run_on_machine(const SuiteCase& one);
@@ -53,7 +53,7 @@ std::string key_text(const trace::Message& message, std::size_t length_max);
 
 /// Charts the whole log: a row for each frame, however many nodes hear it, and for all other
 /// events. Leaves out columns without any part in it.
-report::Sequence chart(const CaseRun& one, const Heeds& heeds = {});
+report::Sequence chart(const CaseRun& one, const Reactions& reactions = {});
 
 /// The same with the failures: rows that break a line of the case are marked, and what is missing
 /// has a row.

@@ -17,7 +17,7 @@ std::string json_report(const SuiteRun& run);
 /// Lists cases without running them: one object of the schema rubric.test.list/1.
 std::string json_list(const std::vector<SuiteCase>& cases);
 
-/// What other forms add to: a case without its log, an implementation without its cases.
+/// Parts that other reports build on: a case without its log, an implementation without its cases.
 nlohmann::ordered_json case_json(const CaseRun& one);
 nlohmann::ordered_json implementation_json(const ImplementationRun& run);
 nlohmann::ordered_json stale_json(const SuiteRun& run);

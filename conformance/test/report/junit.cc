@@ -52,7 +52,7 @@ JunitCase testcase(const std::string& class_name, const CaseRun& one) {
   return out;
 }
 
-// What goes wrong between cases, and at the end, is nothing of any of them.
+// Returns the faults between cases and at the end, as a case of their own.
 JunitCase outside(const std::string& class_name, const ImplementationRun& run) {
   std::string text;
   for (const OutsideFault& one : run.outside) text += outside_text(one) + '\n' + one.stderr_text;

@@ -18,11 +18,13 @@
 
 namespace rubric::runner {
 
-/// Words for what was seen. Of a forbidden output its link ("radio", "serial", "peis", "app"), its
-/// message ("ack" for a net_msg that acks), its result ("success", "fail"), and whether the node
-/// emitted it before ("again", "new"). Of an output that did not come "missing", and "unused" if
-/// nothing at all came on that link; or, if one came
-/// that was like it, "differs" and in what: "am", names of fields, "order"; and "ack" if it acks.
+/// Words for what was seen.
+/// - A forbidden output: its link ("radio", "serial", "peis", "app"), its message ("ack" for a
+///   net_msg that acks), its result ("success", "fail"), and whether the node emitted it before
+///   ("again", "new").
+/// - An output that did not come: "missing", and "unused" if nothing at all came on that link.
+/// - One that came but is not as the line asks: "differs" and in what ("am", names of fields,
+///   "order"), and "ack" if it acks.
 using Evidence = std::set<std::string, std::less<>>;
 
 /// Moves the rules of a line that are only suspected from the failure's requirements to

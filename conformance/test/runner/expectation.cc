@@ -34,7 +34,7 @@ bool is_weak(const trace::Line& line) {
          });
 }
 
-std::set<std::string> names_of(const Line& line) {
+std::set<std::string> variables_of(const Line& line) {
   Names out;
   for (const trace::FieldValue& field : line.message.fields) add_names(field.value, out);
   if (line.am) {
@@ -45,7 +45,7 @@ std::set<std::string> names_of(const Line& line) {
 }
 
 bool is_needed_later(const trace::Case& one, const Line& line) {
-  const Names names = names_of(line);
+  const Names names = variables_of(line);
   const std::vector<const Line*> lines = one.lines();
   bool is_previous = is_counted_from(line);
   for (auto at = std::find(lines.begin(), lines.end(), &line) + 1; at != lines.end(); ++at) {
@@ -54,7 +54,7 @@ bool is_needed_later(const trace::Case& one, const Line& line) {
     is_previous = is_previous && !is_counted_from(later);
     const bool same_label = later.time.base == Time::Base::kLabel && later.time.label == line.label;
     if (same_label) return true;
-    const Names others = names_of(later);
+    const Names others = variables_of(later);
     if (std::any_of(names.begin(), names.end(),
                     [&](const std::string& name) { return others.contains(name); })) {
       return true;

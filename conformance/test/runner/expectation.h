@@ -17,6 +17,6 @@ bool is_weak(const trace::Line& line);
 /// seen.
 bool is_needed_later(const trace::Case& one, const trace::Line& line);
 /// Returns the variables that a line names.
-std::set<std::string> names_of(const trace::Line& line);
+std::set<std::string> variables_of(const trace::Line& line);
 
 }  // namespace rubric::runner

@@ -1,4 +1,4 @@
-// Messages that send refused though the trace goes on with their numbers.
+// Messages that the call `send` refused although the trace goes on with their numbers.
 #pragma once
 
 #include <fmt/format.h>
@@ -22,7 +22,7 @@ class Refusals {
   void note(const trace::Line& line, Ticks time, const trace::Bindings& bindings) {
     constexpr std::int64_t kRefused = 0xFFFF;
     if (!trace::protocol().has_machine || line.message.name != "send_result") return;
-    for (const std::string& name : names_of(line)) {
+    for (const std::string& name : variables_of(line)) {
       if (*bindings.find(name) == trace::Value::of(kRefused)) {
         by_name_[name] = {line.requirements, time};
       }
@@ -31,7 +31,7 @@ class Refusals {
 
   /// Blames a line that was not kept since its message was refused: for that rule, not for its own.
   void blame(const trace::Line& line, Failure& failure) const {
-    for (const std::string& name : names_of(line)) {
+    for (const std::string& name : variables_of(line)) {
       const auto refused = by_name_.find(name);
       if (refused == by_name_.end() || failure.weak) continue;
       const Refusal& refusal = refused->second;

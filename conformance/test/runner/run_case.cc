@@ -53,7 +53,7 @@ class Run {
       begun_ = true;
       for (const Line* line : case_.lines()) {
         place_ = line->place;
-        if (!work(*line)) break;
+        if (!run_line(*line)) break;
       }
       judge_forbidden(result);
       if ((!unseen_.empty() || unjudged_) && result.verdict < CaseVerdict::kInconclusive) {
@@ -73,14 +73,14 @@ class Run {
     } catch (const TargetBroken& error) {
       if (begun_) {
         judge_what_came(result);
-        died(result, error.what());
+        set_died(result, error.what());
       } else {
-        broken(result, place_, error.what());
+        set_error(result, place_, error.what());
       }
     } catch (const trace::TraceError& error) {
-      broken(result, error.place(), error.what());
+      set_error(result, error.place(), error.what());
     } catch (const std::exception& error) {
-      broken(result, place_, error.what());
+      set_error(result, place_, error.what());
     }
     mark_implied(result.failures);
     result.unseen = std::move(unseen_);
@@ -209,17 +209,17 @@ class Run {
 
   // Counts what did not come, or was not looked for, as if it had come at the end of its window:
   // stimuli go on from there.
-  void lose(const Line& line, Ticks end) {
+  void note_missing(const Line& line, Ticks end) {
     matched(line, {end, 0});
     lost_.previous = true;
     if (!line.label.empty()) lost_.labels.insert(line.label);
-    for (const std::string& name : names_of(line)) {
+    for (const std::string& name : variables_of(line)) {
       if (!bindings_.find(name)) lost_.names.insert(name);
     }
   }
 
   bool names_lost(const Line& line) const {
-    const std::set<std::string> names = names_of(line);
+    const std::set<std::string> names = variables_of(line);
     return std::any_of(names.begin(), names.end(),
                        [&](const std::string& name) { return lost_.names.contains(name); });
   }
@@ -232,9 +232,9 @@ class Run {
            names_lost(line);
   }
 
-  // Lets time pass to `end`, or to the first instant at which a node may emit something. A node
+  // Advances time to `end`, or to the first instant at which a node may emit something. A node
   // alone stops there by itself; several go on together.
-  void pass(Ticks end) {
+  void advance(Ticks end) {
     Ticks to = std::max(end, now_);
     if (nodes_.size() == 1) {
       now_ = std::max(now_, nodes_[0].run_until(to));
@@ -250,13 +250,13 @@ class Run {
     }
     now_ = to;
   }
-  void pass_all(Ticks end) {
-    do pass(end);
+  void advance_fully(Ticks end) {
+    do advance(end);
     while (now_ < end);
   }
 
   // Runs a line. Returns false if the case cannot go on.
-  bool work(const Line& line) {
+  bool run_line(const Line& line) {
     const Timed timed = this->timed(line);
     NodeLog* node = node_of(line);
     if (!node) {  // Faults of a link, and what nodes do that are not under test: for the reader.
@@ -272,12 +272,12 @@ class Run {
       if (line.op == Op::kMustNot && is_seen_in_part(*node, line)) {
         forbidden_.push_back(timed);
       }
-      return pass_over(line);
+      return can_skip(line);
     }
     if (line.op == Op::kGiven && names_lost(line)) return false;
     if (line.op != Op::kGiven && depends_on_lost(line)) {
-      if (line.op != Op::kMustNot) passed_over_.push_back(&line);
-      if (line.op == Op::kEmits) lose(line, timed.window.to);
+      if (line.op != Op::kMustNot) skipped_.push_back(&line);
+      if (line.op == Op::kEmits) note_missing(line, timed.window.to);
       return true;
     }
     switch (line.op) {
@@ -311,14 +311,14 @@ class Run {
            (reach.radio || reach.serial || reach.peis || reach.app);
   }
 
-  // Returns false if the case cannot go on without a line of which the target shows nothing, or not
+  // Returns whether the case can go on without a line of which the target shows nothing, or not
   // all.
-  bool pass_over(const Line& line) const {
+  bool can_skip(const Line& line) const {
     return line.op != Op::kGiven && (line.op != Op::kEmits || !is_needed_later(case_, line));
   }
 
   void give(NodeLog& node, const Timed& timed) {
-    pass_all(timed.window.from + timed.slack);
+    advance_fully(timed.window.from + timed.slack);
     stimulus_ = timed.line;
     const Window given = node.give(*timed.line, now_, scope_, bindings_);
     now_ = std::max(now_, given.to);
@@ -337,10 +337,10 @@ class Run {
         return true;
       }
       if (now_ >= wide.to) break;
-      pass(wide.to);
+      advance(wide.to);
     }
     missing_.push_back({timed, widened(node, timed)});
-    lose(line, timed.window.to);
+    note_missing(line, timed.window.to);
     return !is_weak(line);
   }
 
@@ -398,7 +398,7 @@ class Run {
     Ticks end = now_;
     for (const Timed& one : forbidden_) end = std::max(end, one.window.to);
     for (const Missing& one : missing_) end = std::max(end, one.wide.to + kLateTicks);
-    pass_all(end);
+    advance_fully(end);
     judge_outputs(result);
   }
 
@@ -431,7 +431,7 @@ class Run {
       if (miss.time) result.failures.back().broken_at = *miss.time;
       refusals_.blame(line, result.failures.back());
     }
-    for (const Line* line : passed_over_) allowed_.push_back({line, {0, now_}, 0});
+    for (const Line* line : skipped_) allowed_.push_back({line, {0, now_}, 0});
     for (const Timed& one : allowed_) {
       NodeLog& node = *node_of(*one.line);
       node.allow(*one.line, widened(node, one), bindings_);
@@ -452,7 +452,7 @@ class Run {
         });
   }
 
-  void broken(CaseResult& result, trace::Place place, const char* why) {
+  void set_error(CaseResult& result, trace::Place place, const char* why) {
     Failure failure;
     failure.place = place;
     failure.time = failure.from = failure.to = failure.broken_at = now_;
@@ -463,8 +463,8 @@ class Run {
   }
 
   // Blames what was given last for the end of the target.
-  void died(CaseResult& result, const char* why) {
-    broken(result, stimulus_ ? stimulus_->place : place_, why);
+  void set_died(CaseResult& result, const char* why) {
+    set_error(result, stimulus_ ? stimulus_->place : place_, why);
     result.verdict = CaseVerdict::kFail;
     Failure& failure = result.failures.back();
     failure.crash = true;
@@ -532,7 +532,7 @@ class Run {
   std::vector<Missing> missing_;
   Lost lost_;
   Refusals refusals_;
-  std::vector<const Line*> passed_over_;  // What may come, since they depend on what is lost.
+  std::vector<const Line*> skipped_;  // What may come, since they depend on what is lost.
   std::vector<Timed> forbidden_;
   std::vector<Timed> allowed_;
   std::map<std::string, Moment, std::less<>> labels_;

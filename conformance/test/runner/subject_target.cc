@@ -61,13 +61,13 @@ Ticks SubjectTarget::run_until(Ticks time) {
     steps_at_instant_ = *soonest == instant_ ? steps_at_instant_ + 1 : 0;
     instant_ = *soonest;
     if (steps_at_instant_ > kStepsAtOnceMax) return time;
-    let_happen(instant_);
+    run_next_event(instant_);
   }
   return outputs_.size() > before ? instant_ : time;
 }
 
-// Lets the first event happen that is due now.
-void SubjectTarget::let_happen(Ticks now) {
+// Runs the first event that is due now.
+void SubjectTarget::run_next_event(Ticks now) {
   const auto ending = std::find_if(endings_.begin(), endings_.end(),
                                    [&](const Ending& one) { return one.due == now; });
   if (ending != endings_.end()) {

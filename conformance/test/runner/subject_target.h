@@ -34,7 +34,7 @@ class SubjectTarget : public Target {
     Ticks due = 0;
     machine::Link link = machine::Link::kRadio;
   };
-  void let_happen(Ticks now);
+  void run_next_event(Ticks now);
   void step(Ticks now, const machine::Event& event);
   void collect(Ticks now);
 

@@ -15,7 +15,7 @@ namespace rubric::suite {
 struct SuiteCase {
   const trace::Parsed* file = nullptr;
   const trace::Case* one = nullptr;
-  CaseRun blank;                   ///< All but what comes of it.
+  CaseRun blank;                   ///< What is known before it is run.
   std::vector<std::string> rules;  ///< Named by its lines, families too, each once.
 };
 

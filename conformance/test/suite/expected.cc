@@ -170,8 +170,8 @@ std::optional<std::string> reason_of(const report::KnownFailures& expected,
   return std::nullopt;
 }
 
-std::vector<StaleExpectation> untrue(const report::KnownFailures& expected, const SuiteRun& run,
-                                     const Cases& all) {
+std::vector<StaleExpectation> stale_expectations(const report::KnownFailures& expected,
+                                                 const SuiteRun& run, const Cases& all) {
   std::vector<StaleExpectation> out;
   for (const KnownFailure& entry : expected.entries) {
     const std::string place = fmt::format("{}:{}", expected.name, entry.line);

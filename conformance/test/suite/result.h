@@ -96,7 +96,7 @@ struct SuiteRun {
   std::size_t rules_required = 0;  ///< That each implementation has to decide.
 };
 
-/// What statements leave of an implementation's cases.
+/// How many of an implementation's cases its statements leave to be run.
 struct RuledOut {
   std::size_t left = 0;
   std::size_t all = 0;

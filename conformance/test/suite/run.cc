@@ -42,9 +42,9 @@ std::string missing_role(const CaseRun& one, const targets::Identity& identity) 
 }
 
 // Runs the cases of a plan, each repeat by itself, on several attachments.
-class Work {
+class PlanRun {
  public:
-  Work(const Plan& plan, const Watcher& watcher, ImplementationRun& run)
+  PlanRun(const Plan& plan, const Watcher& watcher, ImplementationRun& run)
       : plan_(plan), watcher_(watcher), run_(run) {
     run_.cases.resize(plan.cases.size() * plan.repeats);
     done_.resize(run_.cases.size());
@@ -71,7 +71,8 @@ class Work {
     return out;
   }
 
-  void on(targets::Attachment& attachment) {
+  /// Runs the next cases that nobody else runs, until none is left.
+  void run_cases(targets::Attachment& attachment) {
     for (std::size_t i = next_++; i < run_.cases.size(); i = next_++) {
       const std::uint32_t repeat = static_cast<std::uint32_t>(i % plan_.repeats);
       std::optional<std::uint64_t> seed = plan_.seed;
@@ -83,8 +84,8 @@ class Work {
       keep_mishaps(attachment, i);
       run_.cases[i] = std::move(one);
       done_[i] = true;
-      for (; told_ < done_.size() && done_[told_]; ++told_) {
-        if (watcher_.worked) watcher_.worked(run_.cases[told_]);
+      for (; reported_ < done_.size() && done_[reported_]; ++reported_) {
+        if (watcher_.case_done) watcher_.case_done(run_.cases[reported_]);
       }
     }
     attachment.finish();
@@ -100,7 +101,7 @@ class Work {
   std::mutex mutex_;
   std::vector<bool> done_;
   std::vector<std::pair<std::size_t, OutsideFault>> mishaps_;
-  std::size_t told_ = 0;
+  std::size_t reported_ = 0;
 };
 
 std::vector<std::uint32_t> lines_of_profile(const trace::File& head, const trace::Case& one) {
@@ -177,7 +178,7 @@ ImplementationRun run(const std::string& target, const MakeAttachment& make, con
   }
   if (watcher.started) watcher.started(out);
   if (!out.dishonest.empty()) return out;
-  Work work(plan, watcher, out);
+  PlanRun plan_run(plan, watcher, out);
   std::vector<std::thread> others;
   const unsigned jobs = out.identity.real_time ? 1 : plan.jobs;
   std::vector<std::exception_ptr> broken(jobs);  // Why a job stopped.
@@ -185,14 +186,14 @@ ImplementationRun run(const std::string& target, const MakeAttachment& make, con
     others.emplace_back([&, i] {
       try {
         const std::unique_ptr<targets::Attachment> mine = make();
-        work.on(*mine);
+        plan_run.run_cases(*mine);
       } catch (...) {
         broken[i] = std::current_exception();
       }
     });
   }
   try {
-    work.on(*first);
+    plan_run.run_cases(*first);
   } catch (...) {
     broken[0] = std::current_exception();
   }
@@ -200,7 +201,7 @@ ImplementationRun run(const std::string& target, const MakeAttachment& make, con
   for (const std::exception_ptr& one : broken) {
     if (one) std::rethrow_exception(one);
   }
-  out.outside = work.outside();
+  out.outside = plan_run.outside();
   out.wall_ms = ms_since(start);
   return out;
 }

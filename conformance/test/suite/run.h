@@ -33,7 +33,7 @@ struct Watcher {
   /// Called once identity and honesty are known, before any case is run.
   std::function<void(const ImplementationRun&)> started;
   /// Called in the order of cases, however many jobs there are.
-  std::function<void(const CaseRun&)> worked;
+  std::function<void(const CaseRun&)> case_done;
 };
 
 /// Runs the plan; runs no case of a dishonest implementation.

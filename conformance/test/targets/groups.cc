@@ -120,7 +120,7 @@ GroupsNow groups_now(pid_t pid) {
   GroupsNow out;
   for (const std::atomic<pid_t>& group : groups) {
     const pid_t id = group;
-    out.is_one = out.is_one || id == pid;
+    out.is_leader = out.is_leader || id == pid;
     out.any = out.any || id != kFree;
     out.starting = out.starting || id == kTaken;
   }

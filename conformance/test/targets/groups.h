@@ -35,11 +35,11 @@ class GroupStart {
   bool started_ = false;
 };
 
-/// What is known of groups at a moment.
+/// The known groups at one moment, and whether a process leads one.
 struct GroupsNow {
-  bool is_one = false;    ///< The process leads one.
-  bool any = false;       ///< There are some.
-  bool starting = false;  ///< A child is about to start: it may be any process.
+  bool is_leader = false;  ///< The process leads one.
+  bool any = false;        ///< There is at least one.
+  bool starting = false;   ///< A child is about to start: it may be any process.
 };
 GroupsNow groups_now(pid_t pid);
 

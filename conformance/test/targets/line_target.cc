@@ -26,9 +26,9 @@ using runner::Unsupported;
 using std::chrono::steady_clock;
 
 constexpr lines::Milliseconds kQuiet{60};
-constexpr lines::Milliseconds kQuietMax{2000};  // A node that never pauses is used as it is.
-constexpr lines::Milliseconds kAnswerMax{350};  // 300 ticks, and the way.
-constexpr lines::Milliseconds kLifeMax{3000};   // For a node to start behind a new line.
+constexpr lines::Milliseconds kQuietMax{2000};      // A node that never pauses is used as it is.
+constexpr lines::Milliseconds kAnswerMax{350};      // 300 ticks, and the way.
+constexpr lines::Milliseconds kNodeStartMax{3000};  // For a node to start behind a new line.
 constexpr lines::Milliseconds kAskAgain{500};
 constexpr std::uint16_t kAskedSeqNum = 0xFFF0;
 constexpr lines::Milliseconds kAskApp{5};     // How often the app is asked for news.
@@ -57,7 +57,7 @@ machine::Frame to_sink(std::uint8_t type, Bytes payload) {
 }
 
 // Returns whether a node that starts with `config` has sent this, and is there.
-bool shows_life(const trace::AmFrame& frame, const machine::Config& config) {
+bool shows_node(const trace::AmFrame& frame, const machine::Config& config) {
   const Bytes payload(frame.payload.data(), frame.payload.size());
   if (config.role == machine::Role::kBaseStation) {
     const auto told = rubicon::ConfigView::parse(payload);
@@ -88,10 +88,10 @@ void LineTarget::reset(const machine::Config& config) {
   line_.open();
   if (app_) started.get();
   if (!is_mote()) {  // A mote's line shows nothing.
-    if (!line_.is_new) let_settle();
+    if (!line_.is_new) wait_until_quiet();
     if (role() == machine::Role::kSink) set_island(config);
-    if (line_.is_new) await_life(config);
-    let_settle();
+    if (line_.is_new) await_node(config);
+    wait_until_quiet();
   }
   line_.is_new = false;
   tolerance_of_this_host();  // Measures now, not in the middle of the case.
@@ -113,27 +113,27 @@ void LineTarget::expect_built(const machine::Config& config) const {
   throw runner::NotBuilt("the node at the line is not built with " + statement_text(wanted));
 }
 
-void LineTarget::await_life(const machine::Config& config) {
+void LineTarget::await_node(const machine::Config& config) {
   const bool is_sink = role() == machine::Role::kSink;
-  const lines::SteadyTime end = steady_clock::now() + kLifeMax;
+  const lines::SteadyTime end = steady_clock::now() + kNodeStartMax;
   for (bool again = false; steady_clock::now() < end; again = true) {
     if (is_sink && again) set_island(config);
     if (is_sink) ask_for_ack(config);
     const lines::SteadyTime pause = is_sink ? steady_clock::now() + kAskAgain : end;
     while (const auto packet = line_.line->receive(pause)) {
       trace::AmFrame frame;
-      if (read_packet(*packet, frame) && shows_life(frame, config)) return;
+      if (read_packet(*packet, frame) && shows_node(frame, config)) return;
     }
   }
   line_.mishaps.push_back(
       {fmt::format("{} within {} s after its line was opened",
                    is_sink ? "confirmed no reliable message" : "did not tell its sink the island",
-                   kLifeMax.count() / 1000),
+                   kNodeStartMax.count() / 1000),
        false,
        {}});
 }
 
-void LineTarget::let_settle() {
+void LineTarget::wait_until_quiet() {
   const lines::SteadyTime end = steady_clock::now() + kQuietMax;
   const lines::SteadyTime answered = std::min(end, line_.last_given + kAnswerMax);
   while (steady_clock::now() < end &&

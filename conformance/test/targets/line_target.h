@@ -111,8 +111,8 @@ class LineTarget : public runner::Target {
   void expect_built(const machine::Config& config) const;
   void set_island(const machine::Config& config);
   void ask_for_ack(const machine::Config& config);
-  void await_life(const machine::Config& config);
-  void let_settle();
+  void await_node(const machine::Config& config);
+  void wait_until_quiet();
   bool take(const lines::TimedPacket& packet);
   bool take(std::vector<Output> outputs);
   lines::SteadyTime step_deadline() const;

@@ -27,7 +27,7 @@ std::unique_ptr<runner::Subject> subject_of(const std::string& flaw) {
   return std::make_unique<runner::Machine>(flaws::find(flaw)->step);
 }
 
-// What both have in common: outputs come by themselves, and are shown when somebody asks.
+// The common part of both targets: outputs come by themselves, and are shown on request.
 class RealTarget : public runner::Target {
  public:
   std::optional<runner::Ticks> next() const override { return std::nullopt; }

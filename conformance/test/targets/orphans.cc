@@ -72,7 +72,7 @@ void end_orphans(const std::string& mark) {
     bool any = false;
     for (const pid_t pid : children()) {
       const GroupsNow groups = groups_now(pid);
-      if (groups.is_one || groups.starting) continue;
+      if (groups.is_leader || groups.starting) continue;
       const Whose its = whose(pid, mark);
       if (its == Whose::kAnothers || (its == Whose::kNobodys && groups.any)) continue;
       ::kill(pid, SIGKILL);

@@ -24,7 +24,7 @@ class MarkedEnvironment {
 };
 
 /// Ends all that became children of this process and carry the mark, and what these leave behind.
-/// What has no environment to tell whose it is goes with the last of the groups. Returns within
+/// Processes without a readable environment are ended once no group is left. Returns within
 /// seconds, whatever they do. Without /proc it does nothing.
 void end_orphans(const std::string& mark);
 

@@ -1,4 +1,4 @@
-// A machine with the flaw that live targets once got away with.
+// A flawed machine that tests of nodes on a line once let pass.
 #pragma once
 
 #include <algorithm>

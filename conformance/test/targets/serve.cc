@@ -176,7 +176,7 @@ std::string Server::reset(std::string_view words) {
   const machine::Config config = read_config(Words(words));
   target_.reset(config);
   target_.hold_link_acks(true);
-  told_ = 0;
+  outputs_sent_ = 0;
   started_ = true;
   return "ready\n";
 }
@@ -200,8 +200,9 @@ std::string Server::until(std::string_view rest) {
 
 std::string Server::done(Ticks time) {
   std::string out;
-  for (const std::vector<Output>& all = target_.outputs(); told_ < all.size(); ++told_) {
-    out += output_line(all[told_]) + '\n';
+  for (const std::vector<Output>& all = target_.outputs(); outputs_sent_ < all.size();
+       ++outputs_sent_) {
+    out += output_line(all[outputs_sent_]) + '\n';
   }
   const auto next = target_.next();
   if (next) out += fmt::format("next {}\n", std::max(*next, time));

@@ -30,7 +30,7 @@ class Server {
   Identity identity_;
   bool started_ = false;
   bool ended_ = false;
-  std::size_t told_ = 0;  // Outputs.
+  std::size_t outputs_sent_ = 0;
 };
 
 /// Answers until `bye` or the end of `in`. Returns the exit status: 0 after `bye`.

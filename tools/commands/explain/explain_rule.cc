@@ -53,7 +53,7 @@ std::string cases_text(ReqId id, std::string_view title, bool negative, CaseList
   return wrapped(fmt::format("{}: {}", title, fmt::join(names, ", ")), 4);
 }
 
-// The parts of the project by the beginnings of their paths; a file is of the last that fits.
+// The parts of the project by the beginnings of their paths; a place is in the last that fits.
 constexpr std::pair<std::string_view, const char*> kParts[] = {
     {"spec/requirements.yaml", "sentence"},
     {"spec/wire/", "wire spec"},
@@ -64,24 +64,27 @@ constexpr std::pair<std::string_view, const char*> kParts[] = {
 };
 
 std::string places_text(const Requirement& rule, std::span<const RulePlace> places) {
-  std::vector<std::string_view> files[std::size(kParts)];
+  std::vector<std::string_view> found[std::size(kParts)];
   for (const RulePlace& place : places) {
     if (place.rule != rule.id) continue;
     const auto part = std::find_if(std::rbegin(kParts), std::rend(kParts), [&](const auto& each) {
-      return place.file.starts_with(each.first);
+      return place.place.starts_with(each.first);
     });
-    files[std::rend(kParts) - part - 1].push_back(place.file);
+    found[std::rend(kParts) - part - 1].push_back(place.place);
   }
   std::string out;
   for (std::size_t i = 0; i < std::size(kParts); ++i) {
-    if (files[i].empty()) continue;
-    out += wrapped(fmt::format("{}: {}", kParts[i].second, fmt::join(files[i], ", ")), 4);
+    if (found[i].empty()) continue;
+    out += wrapped(fmt::format("{}: {}", kParts[i].second, fmt::join(found[i], ", ")), 4);
   }
   if (out.empty()) return "";
   const bool of_behaviour = rule.roles != 0;
-  const std::string_view instead = reported_instead(rule.id);
-  if (of_behaviour && files[std::size(kParts) - 1].empty() && !instead.empty()) {
-    out += wrapped(fmt::format("checker: never by this name; in its place: {}", instead), 4);
+  if (of_behaviour && found[std::size(kParts) - 1].empty()) {
+    const std::string_view instead = reported_instead(rule.id);
+    out +=
+        instead.empty()
+            ? "    checker: nowhere, nor among the rules that conformance/check/README.md excuses\n"
+            : wrapped(fmt::format("checker: never by this name; in its place: {}", instead), 4);
   }
   return "  In the code:\n" + out;
 }

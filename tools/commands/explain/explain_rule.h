@@ -23,14 +23,14 @@ std::vector<std::string> rule_groups();
 /// The number of printed cases of a rule.
 enum class CaseList : std::uint8_t { kShort, kWhole };
 
-/// A file of the project in which a rule is written down or kept.
+/// A place in the project where a rule is written down or kept.
 struct RulePlace {
-  std::string_view rule;  ///< Its id.
-  std::string_view file;  ///< From the project's folder; of the catalogue with the line.
+  std::string_view rule;   ///< Its id.
+  std::string_view place;  ///< "conformance/machine/join.cc:86": the first line with it in a file.
 };
 
-/// Returns the places of all rules: the catalogue's lines, then the sources by file name. Generated
-/// when the program is built.
+/// Returns the places of all rules: those in the catalogue, then the sources by file name.
+/// Generated when the program is built.
 std::span<const RulePlace> rule_places();
 
 /// Returns what the checker reports in place of a rule that it never names, by the table of
@@ -38,7 +38,7 @@ std::span<const RulePlace> rule_places();
 std::string_view reported_instead(std::string_view rule);
 
 /// Returns a rule with its roles and source, the differences of release 1.0 and the profiles, the
-/// fields that refer to it in `protocols`, the files where it is, and its golden cases: if there
+/// fields that refer to it in `protocols`, the places where it is, and its golden cases: if there
 /// are many, the first ones, and how to see the others.
 std::string explain_rule(const std::vector<const reflect::Protocol*>& protocols, ReqId id,
                          CaseList list = CaseList::kShort,

@@ -142,9 +142,9 @@ TEST(Explain, RuleOfBehaviour) {
                                  {"j4.right_seq", "b.rtr", "J4-SEQ"_rule, false},
                                  {"j4.old_seq", "b.rtr", "J4-SEQ"_rule, true}};
   const RulePlace places[] = {
-      {"J4-SEQ", "spec/requirements.yaml:7"}, {"J4-SEQ", "conformance/check/a.cc"},
-      {"J4-ACK", "conformance/check/b.cc"},   {"J4-SEQ", "conformance/machine/flaws/c.cc"},
-      {"J4-SEQ", "conformance/machine/d.cc"}, {"J4-SEQ", "conformance/machine/e.cc"}};
+      {"J4-SEQ", "spec/requirements.yaml:7"},    {"J4-SEQ", "conformance/check/a.cc:2"},
+      {"J8-FAIL", "conformance/machine/b.cc:3"}, {"J4-SEQ", "conformance/machine/flaws/c.cc:4"},
+      {"J4-SEQ", "conformance/machine/d.cc:5"},  {"J4-SEQ", "conformance/machine/e.cc:6"}};
   EXPECT_EQ(explain_rule({&kRubicon}, "J4-SEQ"_rule, CaseList::kShort, uses, places),
             "J4-SEQ: MUST, join, mote\n"
             "  A mote ignores a join_reply whose sequence number is not that of its outstanding "
@@ -156,13 +156,14 @@ TEST(Explain, RuleOfBehaviour) {
             "  ack_join.\n"
             "  In the code:\n"
             "    sentence: spec/requirements.yaml:7\n"
-            "    machine: conformance/machine/d.cc, conformance/machine/e.cc\n"
-            "    flaws: conformance/machine/flaws/c.cc\n"
-            "    checker: conformance/check/a.cc\n"
+            "    machine: conformance/machine/d.cc:5, conformance/machine/e.cc:6\n"
+            "    flaws: conformance/machine/flaws/c.cc:4\n"
+            "    checker: conformance/check/a.cc:2\n"
             "  Cases:\n"
             "    positive: j4.right_seq (b.rtr)\n"
             "    negative: j4.wrong_seq (a.rtr), j4.old_seq (b.rtr)\n");
-  const std::string text = explain_rule({&kRubicon}, "J8-FAIL"_rule, CaseList::kShort, {});
+  const std::string text = explain_rule({&kRubicon}, "J8-FAIL"_rule, CaseList::kShort, {}, places);
+  EXPECT_THAT(text, HasSubstr("    machine: conformance/machine/b.cc:3\n    checker: nowhere, "));
   EXPECT_THAT(text, HasSubstr("  For: mote\n"));
   EXPECT_THAT(text, HasSubstr("  Accepted by --profile deployed: A joinIsland call without"));
   EXPECT_THAT(text, testing::EndsWith("  Cases: none\n"));

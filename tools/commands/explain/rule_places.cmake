@@ -1,31 +1,30 @@
 # cmake -DROOT=project -DOUT=rule_places.cc "-DFILES=a.cc b.h" -P rule_places.cmake: where each rule
-# is in the project, for `rubric explain`: its line of spec/requirements.yaml, and the FILES that
-# quote it (`//= J4-SEQ: ...`), name it ("J4-SEQ"_rule) or, of the wire spec, refer to it. Writes
-# OUT only if it changes.
+# is in the project, for `rubric explain`: its line of spec/requirements.yaml, and the first line of
+# each of FILES that quotes it (`//= J4-SEQ: ...`), names it ("J4-SEQ"_rule) or, in the wire spec,
+# refers to it. Writes OUT only if it changes.
 set(rows "")
-file(READ ${ROOT}/spec/requirements.yaml catalogue)
-string(REGEX MATCHALL "- id: [A-Z0-9-]+|\n" marks "${catalogue}")
-set(line 1)
-foreach(mark IN LISTS marks)
-  if(mark STREQUAL "\n")
-    math(EXPR line "${line} + 1")
-  else()
-    string(REPLACE "- id: " "" rule "${mark}")
-    string(APPEND rows "    {\"${rule}\", \"spec/requirements.yaml:${line}\"},\n")
-  endif()
-endforeach()
-
 separate_arguments(FILES)
+list(PREPEND FILES spec/requirements.yaml)
 foreach(file IN LISTS FILES)
   file(READ ${ROOT}/${file} content)
   # Rules in comments of other kinds are examples.
   string(REGEX REPLACE "//[^=\n][^\n]*" "" content "${content}")
   string(REGEX MATCHALL
-    "\"[A-Z0-9-]+\"_rule|//= [A-Z0-9-]+:|-requirement: [A-Z0-9-]+" rules "${content}")
-  list(TRANSFORM rules REPLACE "//= |-requirement: |\"_rule|[\":]" "")
-  list(REMOVE_DUPLICATES rules)
-  foreach(rule IN LISTS rules)
-    string(APPEND rows "    {\"${rule}\", \"${file}\"},\n")
+    "\n|\"[A-Z0-9-]+\"_rule|//= [A-Z0-9-]+:|-requirement: [A-Z0-9-]+|- id: [A-Z0-9-]+"
+    marks "${content}")
+  set(line 1)
+  set(seen "")
+  foreach(mark IN LISTS marks)
+    if(mark STREQUAL "\n")
+      math(EXPR line "${line} + 1")
+      continue()
+    endif()
+    string(REGEX REPLACE "//= |-requirement: |- id: |\"_rule|[\":]" "" rule "${mark}")
+    list(FIND seen ${rule} known)
+    if(known EQUAL -1)
+      list(APPEND seen ${rule})
+      string(APPEND rows "    {\"${rule}\", \"${file}:${line}\"},\n")
+    endif()
   endforeach()
 endforeach()
 

@@ -55,18 +55,18 @@ std::string reach_text(const ImplementationRun& implementation, const TextOption
   }
   if (beyond == 0) return {};
   return wrapped(kIndent,
-                 fmt::format("What is attached decides {} of {}; the others need {} as well "
+                 fmt::format("The attached links decide {} of {}; the others need {} as well "
                              "(conformance/PORTING.md; --app shows more of a node at its line).",
                              played - beyond, counted(played, "case"), fmt::join(unseen, ", ")),
                  options.width);
 }
 
-// Says how many cases what is stated leaves.
+// Says how many cases the stated parameters leave.
 std::string stated_text(const ImplementationRun& implementation, const TextOptions& options) {
   const RuledOut out = ruled_out(implementation);
   if (out.by.empty()) return {};
   return wrapped(kIndent,
-                 fmt::format("What is stated leaves {} of {}: {}.", out.left,
+                 fmt::format("The stated parameters leave {} of {}: {}.", out.left,
                              counted(out.all, "case"), out.by),
                  options.width);
 }

@@ -51,7 +51,7 @@ Outcome hold(const std::string& yaml, CaseRun one, const char* target = "./node"
   implementation.identity.name = "node";
   expect(expected, implementation, one);
   implementation.cases.push_back(one);
-  run.stale = untrue(expected, run, all);
+  run.stale = stale_expectations(expected, run, all);
   return {one.expectation, one.unexpected(), run.stale, exit_code(run)};
 }
 
@@ -125,7 +125,7 @@ TEST(Expected, AnUntrueEntryIsReportedOnce) {
   ASSERT_GT(all, 7U);
   node.cases[1].result.verdict = CaseVerdict::kFail;
   node.cases[1].result.failures = {kAck};
-  const std::vector<StaleExpectation> stale = untrue(file, run, cases);
+  const std::vector<StaleExpectation> stale = stale_expectations(file, run, cases);
   ASSERT_EQ(stale.size(), 1U);
   EXPECT_EQ(stale[0].place, "known.yaml:1");
   const std::string& text = stale[0].text;
@@ -137,7 +137,7 @@ TEST(Expected, AnUntrueEntryIsReportedOnce) {
     one.result.verdict = CaseVerdict::kFail;
     one.result.failures = {kAck};
   }
-  EXPECT_TRUE(untrue(file, run, cases).empty());
+  EXPECT_TRUE(stale_expectations(file, run, cases).empty());
 }
 
 TEST(Expected, AnEmptyFileExpectsNothing) {
@@ -206,7 +206,7 @@ Outcome hold_owed(const std::string& yaml, bool owed = true) {
   if (owed) one.result.verdict = CaseVerdict::kSkip;
   one.owed = owed;
   expect(expected, implementation, one);
-  run.stale = untrue(expected, run, all);
+  run.stale = stale_expectations(expected, run, all);
   return {one.expectation, one.unexpected(), run.stale, exit_code(run)};
 }
 

@@ -28,7 +28,7 @@ mutants::StepMaker broken_step() {
   throw std::runtime_error("no such mutant");
 }
 
-ImplementationRun worked(const std::string& name, const testing::Wrap& make, const Plan& plan) {
+ImplementationRun run_plan(const std::string& name, const testing::Wrap& make, const Plan& plan) {
   return run(
       "./" + name,
       [&] {
@@ -92,9 +92,9 @@ int write(const std::string& folder) {
   Plan plan;
   plan.cases = cases.all();
   SuiteRun all;
-  all.implementations.push_back(worked("good", testing::machine_target, plan));
+  all.implementations.push_back(run_plan("good", testing::machine_target, plan));
   const mutants::StepMaker step = broken_step();
-  all.implementations.push_back(worked(
+  all.implementations.push_back(run_plan(
       "broken",
       [&step] {
         return std::make_unique<runner::SubjectTarget>(std::make_unique<mutants::Wrapped>(step));
