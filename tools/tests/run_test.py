@@ -337,10 +337,22 @@ islands:
                          "mote11_2")
         # The rest of the island goes on meanwhile.
         time.sleep(1.5)
-        for _ in range(TALKS):
+        for _ in range(1 + TALKS):  # That it has joined is the first.
             run.event("received", node="pc11", src="11:2", app_id=10)
         code, _, err = run.end()
         self.assertEqual((code, err), (0, ""))
+
+    def test_base_stations_hear_of_the_first_joins(self):
+        """No mote joins before somebody listens at its sink's serial line."""
+        islands = range(11, 16)
+        plan = self.folder / "islands.yaml"
+        plan.write_text("islands:\n" + "".join(
+            f"  - {{island: {island}, radio: 'zep:0', motes: [{{id: 5}}]}}\n"
+            for island in islands), encoding="utf-8")
+        run = self.started(plan)
+        told = {run.event("received")["src"] for _ in islands}
+        self.assertEqual(told, {f"{island}:5" for island in islands})
+        self.assertEqual(run.end()[0], 0)
 
     def test_applications_end_together(self):
         """The first waits for what the second does when its input has ended."""
