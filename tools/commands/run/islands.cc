@@ -10,6 +10,7 @@
 #include <exception>
 #include <map>
 #include <memory>
+#include <stdexcept>
 #include <thread>
 #include <utility>
 
@@ -171,7 +172,7 @@ class Islands {
   Inhabitant& add(StationSetup setup, const std::string& app, const EcologyMote* mote) {
     Inhabitant& one = *inhabitants_.emplace_back(std::make_unique<Inhabitant>());
     const std::string name = setup.name;
-    one.station = std::make_unique<Station>(std::move(setup), keeper_);
+    one.station = station_of(std::move(setup), name);
     one.applications.push_back(
         std::make_unique<JsonApplication>(JsonApplication::Ends{-1, events_, name, true}));
     if (!app.empty() && app != "demo") {
@@ -185,6 +186,17 @@ class Islands {
     }
     for (const auto& application : one.applications) one.station->add(*application);
     return one;
+  }
+
+  // Errors of a file with many nodes name theirs.
+  std::unique_ptr<Station> station_of(StationSetup setup, const std::string& name) {
+    try {
+      return std::make_unique<Station>(std::move(setup), keeper_);
+    } catch (const lines::Broken& broken) {
+      throw lines::Broken(fmt::format("{}: {}", name, broken.what()));
+    } catch (const std::invalid_argument& mistake) {
+      throw std::invalid_argument(fmt::format("{}: {}", name, mistake.what()));
+    }
   }
 
   std::unique_ptr<space::Gateway> gateway_of(std::uint16_t island) {
