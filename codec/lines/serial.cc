@@ -101,6 +101,8 @@ void SerialLine::send(const std::vector<std::uint8_t>& packet, SteadyTime deadli
 std::optional<TimedPacket> SerialLine::receive(SteadyTime deadline) {
   while (packets_.empty()) {
     if (!read_some(deadline)) return std::nullopt;
+    // What comes without end need not hold a packet.
+    if (packets_.empty() && steady_clock::now() >= deadline) return std::nullopt;
   }
   TimedPacket packet = std::move(packets_.front());
   packets_.pop_front();

@@ -178,7 +178,7 @@ using std::chrono::steady_clock;
 bool StreamLine::open(SteadyTime deadline) {
   if (stream_.is_open()) {
     try {
-      while (read_some(steady_clock::now())) {
+      while (read_some(steady_clock::now()) && steady_clock::now() < deadline) {
       }
       return false;
     } catch (const Broken&) {  // It has gone since.

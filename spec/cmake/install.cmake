@@ -1,6 +1,6 @@
 # Files of `cmake --install`, and the Debian packages that `cpack` makes of them:
 #   tool  the programs rubric, rubricc and rubric-extcap, their manual pages, completions, the
-#         Wireshark dissector
+#         Wireshark dissector, applications of `rubric run`
 #   dev   headers, libraries and examples, for find_package(rubric) and pkg-config
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
@@ -25,9 +25,13 @@ install(DIRECTORY codec conformance DESTINATION ${include_dir} COMPONENT dev
   PATTERN "codec_test" EXCLUDE PATTERN "codec_bench" EXCLUDE PATTERN "*fixture.h" EXCLUDE
   PATTERN "*testing*.h" EXCLUDE PATTERN "cases" EXCLUDE PATTERN "promela" EXCLUDE
   PATTERN "scripts" EXCLUDE)
-file(GLOB node_examples CONFIGURE_DEPENDS conformance/node/examples/*)
+file(GLOB node_examples CONFIGURE_DEPENDS conformance/node/examples/*.cc)
 install(FILES ${node_examples}
   DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples COMPONENT dev)
+# Applications of `rubric run`, which the book begins with.
+file(GLOB applications CONFIGURE_DEPENDS conformance/node/examples/*.py)
+install(FILES ${applications}
+  DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples COMPONENT tool)
 foreach(part codec conformance)
   install(EXPORT rubric_${part} NAMESPACE rubric:: DESTINATION ${config_dir} COMPONENT dev)
 endforeach()

@@ -12,7 +12,7 @@ project of its own, from top to bottom:
     ```sh                   is not run: each `rubric` in it must have the options that are named
 
 All other blocks are only read. In the copy, `rubric` and `rubricc` are those of the build folder,
-`find_package(rubric)` and pkg-config find what was installed from it, and
+`../share` from them, `find_package(rubric)` and pkg-config are what was installed from it, and
 `cmake --build --preset release` is shadow_build.py.
 """
 
@@ -102,6 +102,7 @@ class Place:
         self.environment |= {"PATH": f"{tools}:{os.environ['PATH']}", "LC_ALL": "C.UTF-8",
                              "TZ": "UTC", "HOME": str(self.folder / ".home")}
         if prefix:
+            (self.folder / "share").symlink_to(prefix / "share")
             found = [str(path) for path in prefix.glob("**/pkgconfig")]
             self.environment |= {"CMAKE_PREFIX_PATH": str(prefix),
                                  "PKG_CONFIG_PATH": ":".join(found)}

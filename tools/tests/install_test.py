@@ -150,6 +150,16 @@ class Install(unittest.TestCase):
         self.assertEqual([json.loads(line)["call"] for line in said.splitlines()],
                          ["join", "send"])
 
+    def test_the_program_alone_has_the_applications_of_the_book(self):
+        """What the Debian package rubric has."""
+        prefix = self.base / "tool"
+        run("cmake", "--install", BUILD, "--component", "tool", "--prefix", prefix)
+        chapter = (ROOT / "tools/book/chapters/34-run.md").read_text(encoding="utf-8")
+        named = set(re.findall(r"app: python3 (\w+\.py)", chapter))
+        self.assertEqual(named, {"door.py", "robot.py"})
+        for name in named:
+            self.assertTrue((prefix / "share/doc/rubric/examples" / name).exists(), name)
+
     @unittest.skipUnless(shutil.which("avr-g++"), "there is no avr-g++")
     def test_the_node_on_a_mote(self):
         elf = self.base / "mote.elf"

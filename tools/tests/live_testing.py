@@ -145,7 +145,8 @@ class Mote:
             pass
 
     def step(self):
-        if self.stop in select.select([self.fd, self.stop], [], [])[0]:
+        # What came before the end is read first.
+        if self.fd not in select.select([self.fd, self.stop], [], [])[0]:
             return False
         more = os.read(self.fd, 1 << 16)
         self.bytes += more

@@ -337,10 +337,22 @@ islands:
                          "mote11_2")
         # The rest of the island goes on meanwhile.
         time.sleep(1.5)
-        for _ in range(TALKS):
+        for _ in range(1 + TALKS):  # That it has joined is the first.
             run.event("received", node="pc11", src="11:2", app_id=10)
         code, _, err = run.end()
         self.assertEqual((code, err), (0, ""))
+
+    def test_base_stations_hear_of_the_first_joins(self):
+        """No mote joins before somebody listens at its sink's serial line."""
+        islands = range(11, 16)
+        plan = self.folder / "islands.yaml"
+        plan.write_text("islands:\n" + "".join(
+            f"  - {{island: {island}, radio: 'zep:0', motes: [{{id: 5}}]}}\n"
+            for island in islands), encoding="utf-8")
+        run = self.started(plan)
+        told = {run.event("received")["src"] for _ in islands}
+        self.assertEqual(told, {f"{island}:5" for island in islands})
+        self.assertEqual(run.end()[0], 0)
 
     def test_applications_end_together(self):
         """The first waits for what the second does when its input has ended."""
@@ -393,7 +405,26 @@ islands:
         island = "islands:\n  - island: 11\n"
         for text, line, what in (
                 ("loss: 5\nislans: []\n", 2, "unknown key 'islans'"),
-                ("", 1, "the file: expected keys and values"),
+                ("", 1, "the file: expected keys and values, such as 'islands: [{island: 11}]', "
+                        "not given"),
+                ("loss: 5%\n" + island, 1, "loss in percent: expected a number from 0 to 100, "
+                                           "given '5%'"),
+                ("islands:\n  - island 11\n", 2, "such as 'island: 11', given 'island 11'"),
+                ("islands:\n", 1, "islands has no value"),
+                ("loss: 5\n", 1, "the file has no 'islands'"),
+                (island + "    motes:\n", 3, "motes has no value"),
+                (island + "    motes: {id: 5}\n", 3, "such as '[{id: 5}]', given keys and values"),
+                (island + "    motes: [5]\n", 3, "such as '{id: 5}', given '5'"),
+                (island + "    app: demo\n", 3, "app: the demo is a mote's"),
+                (island + "    sink_app: demo\n", 3, "sink_app: the demo is a mote's"),
+                (island + "    motes: [{id: 2, app: '-'}]\n", 3, "app: expected a command"),
+                (island + "    motes: [{id: 2, app: a b: c}]\n", 3,
+                 "a colon or comma needs quotes"),
+                ("islands:\n\t- island: 11\n", 2, "a tab before the text"),
+                (island + "   radio: zep:0\n", 3, "begins at no column of a list or key above"),
+                (island + "---\n" + island, 4, "a second document"),
+                ("space: mqtt://\n" + island, 1, "space: 'mqtt://': no host"),
+                ("space: mqtt://me:secret@x\n" + island, 1, "RUBRIC_MQTT_USER"),
                 ("loss: 101\n" + island, 1, "from 0 to 100"),
                 (island + "  - island: 11\n", 3, "there is an island 11 already"),
                 (island + "    radio: sf@x:1\n", 3, "expected zep:PORT"),
@@ -404,7 +435,7 @@ islands:
                  "'lite' is none of: light temp"),
                 (island + "    serial: pty\n    app: x\n", 4, "the program at 'serial'"),
                 ("space: peis\n" + island, 1, "memory or mqtt://"),
-                ("islands: [\n", 2, "end of")):
+                ("islands: [\n", 2, "no comma or bracket where one must be")):
             plan = self.folder / "islands.yaml"
             plan.write_text(text, encoding="utf-8")
             run = subprocess.run([RUBRIC, "run", plan], capture_output=True, check=False,
@@ -417,6 +448,12 @@ islands:
                              check=False, text=True, stdin=subprocess.DEVNULL)
         self.assertEqual(run.returncode, 64)
         self.assertIn("--home-assistant: needs a space at a broker", run.stderr)
+        plan.write_text(island + "    radio: zep:0\n    motes: [{id: 2, target: 'machine:x'}]\n",
+                        encoding="utf-8")
+        run = subprocess.run([RUBRIC, "run", plan], capture_output=True, check=False,
+                             text=True, stdin=subprocess.DEVNULL)
+        self.assertEqual(run.returncode, 64)
+        self.assertIn("rubric: mote11_2: the machine has no flaw 'x'", run.stderr)
 
     def test_a_base_station_comes_back_to_its_sink(self):
         place = socket.create_server(("127.0.0.1", 0))

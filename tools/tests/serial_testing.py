@@ -5,11 +5,14 @@ import os
 import pathlib
 import pty
 import select
+import signal
 import socket
 import time
 import tty
 
 PATIENCE_S = 60
+# Tests end programs by SIGINT. A shell ignores it in what it starts with '&', and so would they.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 ACK, PACKET_ACK, PACKET_NOACK, UNKNOWN = 0x43, 0x44, 0x45, 0xff
 
 

@@ -119,11 +119,13 @@ def slow_host(test):
 
 
 class Broker:
-    """mosquitto, which asks for a user; with `tls` a folder of certificates()."""
+    """mosquitto, which asks for a user; with `tls` a folder of certificates(); with `asks` for a
+    certificate, too."""
 
-    def __init__(self, test, port, tls=None):
+    def __init__(self, test, port, tls=None, asks=False):
         self.port = port
         self.tls = tls
+        self.asks = asks
         folder = test.folder
         subprocess.run(["mosquitto_passwd", "-b", "-c", folder / "users", *USER.values()],
                        check=True, capture_output=True)
@@ -131,7 +133,8 @@ class Broker:
         self.file.write_text(f"listener {port} 127.0.0.1\nallow_anonymous false\n"
                              f"password_file {folder}/users\n"
                              f"user {pwd.getpwuid(os.getuid()).pw_name}\n" +
-                             (f"certfile {tls}/host.crt\nkeyfile {tls}/host.key\n" if tls else ""),
+                             (f"certfile {tls}/host.crt\nkeyfile {tls}/host.key\n" if tls else "") +
+                             (f"cafile {tls}/ca.crt\nrequire_certificate true\n" if asks else ""),
                              encoding="utf-8")
         self.process = None
         test.addCleanup(self.stop)
@@ -156,6 +159,8 @@ class Broker:
     def client(self, program):
         user, password = USER.values()
         secure = ["--cafile", self.tls / "ca.crt"] if self.tls else []
+        if self.asks:
+            secure += ["--cert", self.tls / "host.crt", "--key", self.tls / "host.key"]
         return [program, "-h", "127.0.0.1", "-p", str(self.port), "-u", user, "-P", password,
                 *secure]
 
@@ -414,6 +419,33 @@ islands:
         plain = self.started("base-station", "--island", 12, "--space",
                              self.broker.url.replace("mqtts", "mqtt"), "--credentials", users)
         self.assertNotIn("connected", plain.waits_for(rb"mqtt://\S+: (.*)\n"))
+
+    def test_tls_by_a_certificate(self):
+        certificates(self.folder)
+        self.broker.stop()
+        self.broker = Broker(self, self.broker.port, self.folder, asks=True)
+        users = self.folder / "gate"
+        secret = (f"user={USER['RUBRIC_MQTT_USER']}\npassword={USER['RUBRIC_MQTT_PASSWORD']}\n"
+                  f"ca={self.folder}/ca.crt\n")
+        own = f"cert={self.folder}/host.crt\nkey={self.folder}/host.key\n"
+        users.write_text(secret + own, encoding="utf-8")
+        base = self.started("base-station", "--island", 12, "--space", self.broker.url,
+                            "--credentials", users)
+        base.waits_for(rb"(mqtts://\S+: connected)")
+        self.assertEqual(base.end()[0], 0)
+        users.write_text(secret, encoding="utf-8")
+        base = self.started("base-station", "--island", 12, "--space", self.broker.url,
+                            "--credentials", users)
+        base.waits_for(rb"(it asks for one \(cert=, key=\))")
+        self.assertEqual(base.end(None)[0], 66)
+        for text, wrong in ((secret + "cert=/none\n", "gate:4: /none cannot be read"),
+                            (secret + own.split("\n")[0], "cert= and key= belong together")):
+            users.write_text(text, encoding="utf-8")
+            run = subprocess.run([RUBRIC, "run", "base-station", "--island", "12", "--space",
+                                  self.broker.url, "--credentials", users], capture_output=True,
+                                 check=False, text=True)
+            self.assertEqual(run.returncode, 64)
+            self.assertIn(wrong, run.stderr)
 
     def test_two_base_stations_of_an_island(self):
         subscriber = Subscriber(self, self.broker, "rubicon/11/availability")

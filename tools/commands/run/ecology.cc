@@ -7,12 +7,14 @@
 #include <charconv>
 #include <map>
 #include <set>
+#include <sstream>
 #include <stdexcept>
 #include <utility>
 
 #include "codec/lines/line.h"
 #include "conformance/node/sizes.h"
 #include "tools/commands/run/names.h"
+#include "tools/commands/space/mqtt_space.h"
 
 namespace rubric::run {
 namespace {
@@ -28,8 +30,16 @@ struct Mistake {
 // An empty file has no place.
 int line_of(const YAML::Node& node) { return std::max(node.Mark().line, 0) + 1; }
 
+// Returns what is there in place of what was expected, for a message.
+std::string given(const YAML::Node& node) {
+  if (node.IsScalar()) return fmt::format("given '{}'", node.Scalar());
+  return node.IsSequence() ? "given a list" : node.IsMap() ? "given keys and values" : "not given";
+}
+
 std::string text_of(const YAML::Node& node, const std::string& key) {
-  if (!node.IsScalar()) throw Mistake{line_of(node), key + ": expected a text"};
+  if (!node.IsScalar()) {
+    throw Mistake{line_of(node), fmt::format("{}: expected a text, {}", key, given(node))};
+  }
   return node.Scalar();
 }
 
@@ -53,10 +63,14 @@ std::string list_of(const YAML::Node& node, const std::string& key) {
   return out;
 }
 
-// Returns the values of a map by their keys, all of which must be known.
+// Returns the values of a map by their keys, all of which must be known and have a value.
 std::map<std::string, YAML::Node> values_of(const YAML::Node& node, const std::string& what,
-                                            const std::vector<std::string>& known) {
-  if (!node.IsMap()) throw Mistake{line_of(node), what + ": expected keys and values"};
+                                            const std::vector<std::string>& known,
+                                            const std::string& example) {
+  if (!node.IsMap()) {
+    throw Mistake{line_of(node), fmt::format("{}: expected keys and values, such as '{}', {}", what,
+                                             example, given(node))};
+  }
   std::map<std::string, YAML::Node> out;
   for (const auto& pair : node) {
     const std::string key = text_of(pair.first, "key");
@@ -64,6 +78,7 @@ std::map<std::string, YAML::Node> values_of(const YAML::Node& node, const std::s
       throw Mistake{line_of(pair.first),
                     fmt::format("unknown key '{}'; {} has {}", key, what, fmt::join(known, ", "))};
     }
+    if (pair.second.IsNull()) throw Mistake{line_of(pair.first), key + " has no value"};
     if (!out.emplace(key, pair.second).second) {
       throw Mistake{line_of(pair.first), key + " is given twice"};
     }
@@ -81,9 +96,24 @@ auto named(const YAML::Node& node, const std::string& key, Parse parse) {
   }
 }
 
+// Returns the command of an application.
+std::string app_of(const YAML::Node& node, const std::string& key) {
+  const std::string text = text_of(node, key);
+  if (text != "-") return text;
+  throw Mistake{line_of(node), key + ": expected a command: - is for one node at a terminal"};
+}
+
+// Does so where there is no demo.
+std::string station_app_of(const YAML::Node& node, const std::string& key) {
+  if (node.IsScalar() && node.Scalar() == "demo") {
+    throw Mistake{line_of(node), key + ": the demo is a mote's"};
+  }
+  return app_of(node, key);
+}
+
 EcologyMote mote_of(const YAML::Node& node) {
-  auto values =
-      values_of(node, "a mote", {"id", "type", "transducers", "actuators", "app", "target"});
+  auto values = values_of(node, "a mote",
+                          {"id", "type", "transducers", "actuators", "app", "target"}, "{id: 5}");
   if (!values.contains("id")) throw Mistake{line_of(node), "a mote needs an id"};
   EcologyMote mote;
   mote.id = static_cast<std::uint16_t>(number_of(values["id"], "id", node::kSinkId + 1, kIdMax));
@@ -97,9 +127,7 @@ EcologyMote mote_of(const YAML::Node& node) {
   if (const auto at = values.find("actuators"); at != values.end()) {
     mote.descriptor.actuators = named(at->second, "actuators", actuators_of);
   }
-  if (const auto at = values.find("app"); at != values.end()) {
-    mote.app = text_of(at->second, "app");
-  }
+  if (values.contains("app")) mote.app = app_of(values["app"], "app");
   if (const auto at = values.find("target"); at != values.end()) {
     mote.target = text_of(at->second, "target");
   }
@@ -130,23 +158,26 @@ std::string serial_of(const YAML::Node& node) {
 }
 
 EcologyIsland island_of(const YAML::Node& node, std::size_t index) {
-  auto values =
-      values_of(node, "an island", {"island", "radio", "serial", "app", "sink_app", "motes"});
+  auto values = values_of(node, "an island",
+                          {"island", "radio", "serial", "app", "sink_app", "motes"}, "island: 11");
   if (!values.contains("island")) throw Mistake{line_of(node), "an island needs its number"};
   EcologyIsland island;
   island.island = static_cast<std::uint16_t>(number_of(values["island"], "island", 1, kIdMax));
   island.radio = values.contains("radio") ? radio_of(values["radio"])
                                           : fmt::format("zep:{}", kFirstPort + index);
   if (values.contains("serial")) island.serial = serial_of(values["serial"]);
-  if (values.contains("app")) island.app = text_of(values["app"], "app");
-  if (values.contains("sink_app")) island.sink_app = text_of(values["sink_app"], "sink_app");
+  if (values.contains("app")) island.app = station_app_of(values["app"], "app");
+  if (values.contains("sink_app")) {
+    island.sink_app = station_app_of(values["sink_app"], "sink_app");
+  }
   if (!island.serial.empty() && !island.app.empty()) {
     throw Mistake{line_of(values["app"]),
                   "app is the base station's, which is the program at 'serial'"};
   }
   if (!values.contains("motes")) return island;
   if (!values["motes"].IsSequence()) {
-    throw Mistake{line_of(values["motes"]), "motes: expected a list"};
+    throw Mistake{line_of(values["motes"]),
+                  "motes: expected a list, such as '[{id: 5}]', " + given(values["motes"])};
   }
   std::set<std::uint16_t> ids;
   for (const YAML::Node& each : values["motes"]) {
@@ -182,22 +213,34 @@ void check_island(const YAML::Node& node, const EcologyIsland& island, const Eco
   }
 }
 
+void check_space(const YAML::Node& node) {
+  const std::string expected = "space: expected memory or mqtt://HOST:PORT/ROOT, " + given(node);
+  if (!node.Scalar().starts_with("mqtt")) throw Mistake{line_of(node), expected};
+  try {
+    space::parse_mqtt(node.Scalar());
+  } catch (const std::invalid_argument& error) {
+    throw Mistake{line_of(node), fmt::format("space: {}", error.what())};
+  }
+}
+
 Ecology ecology_of(const YAML::Node& node) {
-  auto values = values_of(node, "the file", {"loss", "seed", "space", "islands"});
+  auto values =
+      values_of(node, "the file", {"loss", "seed", "space", "islands"}, "islands: [{island: 11}]");
   Ecology out;
   if (values.contains("loss")) {
-    out.loss_percent = static_cast<std::uint32_t>(number_of(values["loss"], "loss", 0, 100));
+    out.loss_percent =
+        static_cast<std::uint32_t>(number_of(values["loss"], "loss in percent", 0, 100));
   }
   if (values.contains("seed")) out.seed = number_of(values["seed"], "seed", 0, UINT32_MAX);
   if (values.contains("space")) {
     out.space = text_of(values["space"], "space");
     if (out.space == "memory") out.space.clear();
-    if (!out.space.empty() && !out.space.starts_with("mqtt")) {
-      throw Mistake{line_of(values["space"]), "space: expected memory or mqtt://HOST:PORT/ROOT"};
-    }
+    if (!out.space.empty()) check_space(values["space"]);
   }
-  if (!values.contains("islands") || !values["islands"].IsSequence()) {
-    throw Mistake{line_of(node), "islands: expected a list"};
+  if (!values.contains("islands")) throw Mistake{line_of(node), "the file has no 'islands'"};
+  if (!values["islands"].IsSequence()) {
+    throw Mistake{line_of(values["islands"]),
+                  "islands: expected a list, such as '- island: 11', " + given(values["islands"])};
   }
   for (const YAML::Node& each : values["islands"]) {
     EcologyIsland island = island_of(each, out.islands.size());
@@ -208,15 +251,37 @@ Ecology ecology_of(const YAML::Node& node) {
   return out;
 }
 
+// Says in plain words what the reader of YAML finds wrong.
+std::string syntax_error(const YAML::Exception& error, const std::string& text) {
+  std::istringstream lines(text);
+  std::string line;
+  for (int number = 0; number <= error.mark.line; ++number) std::getline(lines, line);
+  const std::string begin = line.substr(0, line.find_first_not_of(" \t"));
+  if (begin.find('\t') != begin.npos) return "a tab before the text: YAML takes spaces";
+  if (error.msg == YAML::ErrorMsg::END_OF_SEQ || error.msg == YAML::ErrorMsg::END_OF_MAP) {
+    return "begins at no column of a list or key above";
+  }
+  if (error.msg == YAML::ErrorMsg::END_OF_MAP_FLOW ||
+      error.msg == YAML::ErrorMsg::END_OF_SEQ_FLOW) {
+    return "no comma or bracket where one must be; a text with a colon or comma needs quotes";
+  }
+  return "no YAML: " + error.msg;
+}
+
 }  // namespace
 
 Ecology parse_ecology(const std::string& text, const std::string& name) {
   try {
-    return ecology_of(YAML::Load(text));
+    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
+    if (documents.size() > 1) {
+      throw Mistake{line_of(documents[1]), "a second document: a file has all islands in one"};
+    }
+    return ecology_of(documents.empty() ? YAML::Node() : documents[0]);
   } catch (const Mistake& mistake) {
     throw std::runtime_error(fmt::format("{}:{}: {}", name, mistake.line, mistake.text));
   } catch (const YAML::Exception& broken) {
-    throw std::runtime_error(fmt::format("{}:{}: {}", name, broken.mark.line + 1, broken.msg));
+    throw std::runtime_error(
+        fmt::format("{}:{}: {}", name, broken.mark.line + 1, syntax_error(broken, text)));
   }
 }
 

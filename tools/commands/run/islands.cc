@@ -10,6 +10,7 @@
 #include <exception>
 #include <map>
 #include <memory>
+#include <stdexcept>
 #include <thread>
 #include <utility>
 
@@ -29,6 +30,8 @@ namespace rubric::run {
 namespace {
 
 constexpr lines::Milliseconds kApplicationEnds{2000};  // Of itself, when its input has ended.
+constexpr lines::Milliseconds kLinkTime{5000};         // Of base stations and their sinks.
+constexpr lines::Milliseconds kLinkPoll{5};
 
 // One node with what belongs to it. Members end in the order of their need for each other.
 struct Inhabitant {
@@ -102,9 +105,16 @@ class Islands {
 
   void run() {
     std::deque<std::thread> threads;
-    for (auto& inhabitant : inhabitants_) {
-      threads.emplace_back([this, station = inhabitant->station.get()] { run(*station); });
-    }
+    const auto start = [&](bool motes) {
+      for (auto& inhabitant : inhabitants_) {
+        Station* const station = inhabitant->station.get();
+        const bool is_mote = station->setup().role == node::Role::kMote;
+        if (is_mote == motes) threads.emplace_back([this, station] { run(*station); });
+      }
+    };
+    start(false);
+    await_links();
+    start(true);
     for (std::thread& thread : threads) thread.join();
     end_applications();
     events_->finish(std::chrono::steady_clock::now() + kLastWords);
@@ -114,6 +124,18 @@ class Islands {
   }
 
  private:
+  // A sink tells of a mote's joining once, and nobody where its serial line is not in use yet.
+  void await_links() {
+    const auto deadline = std::chrono::steady_clock::now() + kLinkTime;
+    for (const auto& inhabitant : inhabitants_) {
+      const Station& station = *inhabitant->station;
+      if (station.setup().role != node::Role::kBaseStation) continue;
+      while (!station.is_linked() && !lines::stop_requested() &&
+             std::chrono::steady_clock::now() < deadline) {
+        std::this_thread::sleep_for(kLinkPoll);
+      }
+    }
+  }
   // All of them have the same time.
   void end_applications() {
     for (const auto& inhabitant : inhabitants_) {
@@ -150,7 +172,7 @@ class Islands {
   Inhabitant& add(StationSetup setup, const std::string& app, const EcologyMote* mote) {
     Inhabitant& one = *inhabitants_.emplace_back(std::make_unique<Inhabitant>());
     const std::string name = setup.name;
-    one.station = std::make_unique<Station>(std::move(setup), keeper_);
+    one.station = station_of(std::move(setup), name);
     one.applications.push_back(
         std::make_unique<JsonApplication>(JsonApplication::Ends{-1, events_, name, true}));
     if (!app.empty() && app != "demo") {
@@ -164,6 +186,17 @@ class Islands {
     }
     for (const auto& application : one.applications) one.station->add(*application);
     return one;
+  }
+
+  // Errors of a file with many nodes name theirs.
+  std::unique_ptr<Station> station_of(StationSetup setup, const std::string& name) {
+    try {
+      return std::make_unique<Station>(std::move(setup), keeper_);
+    } catch (const lines::Broken& broken) {
+      throw lines::Broken(fmt::format("{}: {}", name, broken.what()));
+    } catch (const std::invalid_argument& mistake) {
+      throw std::invalid_argument(fmt::format("{}: {}", name, mistake.what()));
+    }
   }
 
   std::unique_ptr<space::Gateway> gateway_of(std::uint16_t island) {

@@ -77,14 +77,13 @@ std::optional<lines::TimedPacket> PtyLine::receive(lines::SteadyTime deadline) {
   while (packets_.empty()) {
     std::uint8_t room[1024];
     const ssize_t size = ::read(master_.get(), room, sizeof room);
-    if (size > 0) {
-      take(Bytes(room, static_cast<std::size_t>(size)));
-      continue;
-    }
+    if (size > 0) take(Bytes(room, static_cast<std::size_t>(size)));
+    if (!packets_.empty()) break;
+    // Also while bytes come: they need not hold a packet.
     const auto left = std::chrono::ceil<lines::Milliseconds>(deadline - steady_clock::now());
     if (left.count() <= 0) return std::nullopt;
     pollfd input{master_.get(), POLLIN, 0};
-    ::poll(&input, 1, static_cast<int>(std::min<std::int64_t>(left.count(), 1000)));
+    if (size <= 0) ::poll(&input, 1, static_cast<int>(std::min<std::int64_t>(left.count(), 1000)));
   }
   lines::TimedPacket packet = std::move(packets_.front());
   packets_.pop_front();

@@ -1,6 +1,7 @@
 // One end of the serial line between a sink and its base station.
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <string>
 #include <vector>
@@ -24,6 +25,7 @@ class SerialEnd {
   const std::string& other_end() const { return other_end_; }
   /// Opens the line if it is time to. Returns whether it has just been opened.
   bool open();
+  /// From any thread.
   bool is_open() const { return open_; }
   /// Returns whether the line took the packet.
   bool send(const std::vector<std::uint8_t>& packet);
@@ -45,7 +47,7 @@ class SerialEnd {
   bool waits_for_others_ = false;
   std::shared_ptr<lines::Descriptor> listener_;  // Of a sink that is a serial forwarder.
   std::unique_ptr<lines::PacketLine> line_;
-  bool open_ = false;
+  std::atomic<bool> open_ = false;
   bool said_ = false;
   bool turned_away_ = false;  // And that was said.
   lines::SteadyTime next_try_{};

@@ -67,6 +67,8 @@ class Station final : private LayerUser, public Caller {
   std::uint16_t air_port() const { return radio_->port(); }
   /// Returns the sink's serial line as a base station names it.
   const std::string& serial_address() const { return serial_->other_end(); }
+  /// Returns whether somebody is at the other end of its serial line. From any thread.
+  bool is_linked() const { return serial_ && serial_->is_open(); }
 
   /// Runs until stop() holds or an application ends it. Throws Broken.
   void run(const std::function<bool()>& stop);

@@ -70,7 +70,9 @@ MqttSettings parse_mqtt(const std::string& url) {
   }
   // Seen by everybody who lists processes.
   if (rest.find('@') != rest.npos) {
-    throw std::invalid_argument("user and password belong into a file or the environment");
+    throw std::invalid_argument(
+        "user and password belong into a file or the environment: --credentials, or "
+        "RUBRIC_MQTT_USER and RUBRIC_MQTT_PASSWORD");
   }
   out.port = out.tls ? 8883 : 1883;
   const std::size_t colon = rest.rfind(':');
@@ -110,6 +112,14 @@ void add_credentials(const std::string& file, MqttSettings& settings) {
           fmt::format("{}:{}: expected user=, password=, ca=, cert= or key=", file, number));
     }
     *place->second = line.substr(equals + 1);
+    const bool is_file = place->first != "user" && place->first != "password";
+    if (is_file && !std::ifstream(*place->second)) {
+      throw std::invalid_argument(
+          fmt::format("{}:{}: {} cannot be read", file, number, *place->second));
+    }
+  }
+  if (settings.cert_file.empty() != settings.key_file.empty()) {
+    throw std::invalid_argument(file + ": cert= and key= belong together");
   }
 }
 
@@ -239,8 +249,8 @@ class MqttSpace::Client {
 
   [[noreturn]] void no_tls() const {
     throw lines::Broken(name_ +
-                        ": no TLS: its certificate is not trusted (ca= in --credentials), or "
-                        "nothing speaks TLS there");
+                        ": no TLS: its certificate is not trusted (ca= in --credentials), it asks "
+                        "for one (cert=, key=), or nothing speaks TLS there");
   }
 
   // Writes a tuple, now or when the broker is there. Both with the mutex held.
