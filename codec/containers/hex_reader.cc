@@ -29,7 +29,7 @@ constexpr std::string_view kBlanks = " \t";
 bool is_digit(char c) { return kDigits.find(c) != kDigits.npos; }
 
 std::string_view word_of(std::string_view text) {
-  return text.substr(0, text.find_first_of(" \t\r"));
+  return text.substr(0, text.find_first_of(" \t\r|"));
 }
 
 std::size_t after_blanks(std::string_view text, std::size_t at) {
@@ -131,6 +131,7 @@ std::size_t stamp_end(std::string_view text) {
     return end != text.npos && dated ? end + 1 : 0;
   }
   std::string_view word = word_of(text);
+  if (word.ends_with(':')) word.remove_suffix(1);
   if (is_seconds(word)) return word.size();
   const std::size_t day_end = word.find('T');
   if (day_end != word.npos && is_date(word.substr(0, day_end)) &&
@@ -161,8 +162,10 @@ std::size_t stamp_size(Bytes line) {
   if (first.size() == 2 && is_hex_digit(static_cast<std::uint8_t>(first[0]))) return 0;  // A byte.
   std::size_t end = stamp_end(text.substr(begin, kStampMost));
   if (end == 0 && begins_with_epoch(text.substr(begin))) end = word_of(text.substr(begin)).size();
-  std::size_t next = begin;
-  if (end != 0) next = after_blanks(text, begin + end);
+  std::size_t next = begin + end;
+  const bool marked = end != 0 && next < text.size() && (text[next] == '|' || text[next] == ':');
+  if (marked) ++next;  // The end of the stamp.
+  if (end != 0) next = after_blanks(text, next);
   if (end != 0 && text.substr(next, 2) == "->") next = after_blanks(text, next + 2);
   const std::size_t label = label_end(text.substr(next));
   return end == 0 && label == 0 ? 0 : next + label;
@@ -311,8 +314,13 @@ void HexReader::serial_bytes(Bytes bytes, PacketSink sink) {
   in_frame_ = bytes[bytes.size() - 1] != kHdlcFlag;
 }
 
-void HexReader::pass_over() {
+void HexReader::pass_over(Bytes whole) {
   if (noise_.lines++ == 0) noise_.first = line_number_;
+  if (noise_.prefixed != 0) return;
+  const std::size_t prefix = unknown_prefix(whole);
+  if (prefix == 0) return;
+  noise_.prefixed = line_number_;
+  noise_.prefix.assign(whole.begin(), whole.begin() + prefix);
 }
 
 void HexReader::line(Bytes whole, PacketSink sink) {
@@ -335,7 +343,8 @@ void HexReader::line(Bytes whole, PacketSink sink) {
   }
   packet.error = decode_hex_line(text, bytes_);
   if (dropped_ != 0) packet.error = fail(Fault::kTooLong, text.size(), "WIRE-HEX"_rule).error;
-  if (is_log_ && packet.error.fault == Fault::kUnexpected && is_noise(text)) return pass_over();
+  const bool noise = is_log_ && packet.error.fault == Fault::kUnexpected && is_noise(text);
+  if (noise) return pass_over(whole);
   if (packet.error.fault != Fault::kNone) {
     packet.framing = Framing::kBare;
     packet.error.offset_bytes += static_cast<std::uint32_t>(stamp);
@@ -347,7 +356,7 @@ void HexReader::line(Bytes whole, PacketSink sink) {
   const Bytes bytes(bytes_.data(), bytes_.size());
   if (is_serial_bytes(bytes)) return serial_bytes(bytes, sink);
   if (is_log_ && options_.hex_framing == Framing::kSf && bytes.size() < kPacketLineBytes) {
-    return pass_over();
+    return pass_over(whole);
   }
   if (options_.hex_framing == Framing::kBare) {
     packet.bytes = bytes;

@@ -39,7 +39,7 @@ class HexReader final : public Reader {
   void serial_bytes(Bytes bytes, PacketSink sink);
   void hold(Bytes text);
   void line(Bytes whole, PacketSink sink);
-  void pass_over();
+  void pass_over(Bytes whole);
   void deliver_held(PacketSink sink);
 
   ReaderOptions options_;
@@ -72,9 +72,9 @@ bool begins_serial_frame(Bytes bytes);
 /// included, and of a label as `mote 2:` or `node 2:` before a packet; 0 without both. Stamps are a
 /// text in brackets with a digit, as `[12.345]` or `(12.345)`; a number with a point, as
 /// `1700000000.123`; a time of day, as `12:34:56.789` or `10:00:00 AM`, after a date or not: those
-/// of `ts`, minicom and the Arduino IDE are. Hex text never begins so. And a number of 10, 13, 16
-/// or 19 digits from 1 on, as `date +%s` prints it, before words of another size: hex text has
-/// words of one size.
+/// of `ts`, minicom, the Arduino IDE and Contiki's serialdump are. A `:` or `|` may end them. Hex
+/// text never begins so. And a number of 10, 13, 16 or 19 digits from 1 on, as `date +%s` prints
+/// it, before words of another size: hex text has words of one size.
 std::size_t stamp_size(Bytes line);
 
 /// Returns whether hex text begins with the bytes of a packet's header.

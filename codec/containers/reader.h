@@ -37,7 +37,9 @@ class Reader {
   /// Lines of text that are no packets and no mistakes either.
   struct Noise {
     std::uint64_t lines = 0;
-    std::uint64_t first = 0;  ///< Its number, from 1.
+    std::uint64_t first = 0;     ///< Its number, from 1.
+    std::uint64_t prefixed = 0;  ///< Number of the first that has hex text after an unknown prefix.
+    std::string prefix = {};     ///< What is before that text.
   };
   virtual Noise noise() const { return {}; }
 

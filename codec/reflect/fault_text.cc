@@ -169,6 +169,7 @@ std::string note_text(const Note& note) {
       return (note.type ? note.type->name : name) + std::string(" does not travel on the serial ") +
              "line: these are the bytes of a radio message in a serial packet's form";
     case NoteKind::kNotDecoded: {
+      if (note.value < 0) return "packets of a forwarder carry no message known here";
       char hex[24];
       std::snprintf(hex, sizeof(hex), "%#llx", static_cast<unsigned long long>(note.value));
       return std::string("frames of kind ") + hex + " carry no message known here";

@@ -11,6 +11,7 @@ codes: 0 it agrees with all, 1 it does not, 2 it could not be run.
 import argparse
 import collections
 import json
+import os
 import queue
 import subprocess
 import sys
@@ -152,7 +153,8 @@ class Decoder:
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--rubric", default="build/release/rubric")
+    built = "build/release/rubric"
+    parser.add_argument("--rubric", default=built if os.path.exists(built) else "rubric")
     parser.add_argument("--count", type=int, default=10000)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--valid", type=float, default=0.7)

@@ -89,9 +89,18 @@ else()
 endif()
 install(FILES tools/wireshark/generated/rubric.lua
   DESTINATION ${CMAKE_INSTALL_DATADIR}/rubric/wireshark COMPONENT tool)
+# What the commands of README.md and the book read, under the same paths.
 install(DIRECTORY conformance/protocols/ctp
-  DESTINATION ${CMAKE_INSTALL_DATADIR}/rubric/protocols COMPONENT tool
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/rubric/conformance/protocols COMPONENT tool
   PATTERN "__pycache__" EXCLUDE PATTERN "bugs.json" EXCLUDE)
+install(DIRECTORY conformance/adapters/python
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/rubric/conformance/adapters COMPONENT tool
+  FILES_MATCHING PATTERN "*.py" PATTERN "__pycache__" EXCLUDE)
+install(DIRECTORY spec/captures/firmware spec/captures/basestation
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/rubric/spec/captures COMPONENT tool
+  FILES_MATCHING PATTERN "*.pcapng" PATTERN "*.bin" PATTERN "*.sfstream")
+install(FILES fuzz/external/compare.py
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/rubric/fuzz/external COMPONENT tool)
 # What rubricc reads.
 install(FILES spec/requirements.yaml DESTINATION ${CMAKE_INSTALL_DATADIR}/rubric/spec
   COMPONENT tool)
@@ -102,6 +111,7 @@ install(DIRECTORY conformance/cases DESTINATION ${CMAKE_INSTALL_DATADIR}/rubric/
 # The folders that README.md links to are not installed.
 file(READ README.md readme)
 string(REGEX REPLACE "\\[([^]]+)\\]\\([^)]*\\)" "\\1" readme "${readme}")
+string(REPLACE "build/release/rubric" "rubric" readme "${readme}")
 file(WRITE ${PROJECT_BINARY_DIR}/installed/README.md "${readme}")
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS README.md)
 install(FILES LICENSE ${PROJECT_BINARY_DIR}/installed/README.md

@@ -97,6 +97,11 @@ class Place:
             f" {shlex.quote(str(build))} {shlex.quote(str(self.folder))} \"$5\"\n",
             encoding="utf-8")
         (tools / "cmake").chmod(0o755)
+        self.surround(tools, prefix)
+        self.include = prefix / "include/rubric" if prefix else root
+
+    def surround(self, tools, prefix):
+        """The environment in which programs run."""
         drop = ("MOTECOM", "GITHUB_ACTIONS", "COLUMNS", "NO_COLOR", "MAKEFLAGS")
         self.environment = {key: value for key, value in os.environ.items() if key not in drop}
         self.environment |= {"PATH": f"{tools}:{os.environ['PATH']}", "LC_ALL": "C.UTF-8",
@@ -106,7 +111,6 @@ class Place:
             found = [str(path) for path in prefix.glob("**/pkgconfig")]
             self.environment |= {"CMAKE_PREFIX_PATH": str(prefix),
                                  "PKG_CONFIG_PATH": ":".join(found)}
-        self.include = prefix / "include/rubric" if prefix else root
 
     def run(self, words):
         done = subprocess.run(words, cwd=self.folder, env=self.environment, text=True,
@@ -174,6 +178,17 @@ class Place:
             if block.language == "cpp" and "build" not in block.words:
                 self.compile(block)
         return block.text
+
+
+class Installed(Place):
+    """A folder with what an installation has in share/rubric, and the installed programs."""
+
+    def __init__(self, folder, prefix):  # pylint: disable=super-init-not-called
+        self.folder = pathlib.Path(folder)
+        shutil.copytree(prefix / "share/rubric", self.folder)
+        (self.folder / ".home").mkdir()
+        self.surround(prefix / "bin", prefix)
+        self.include = prefix / "include/rubric"
 
 
 def renewed(text, place):

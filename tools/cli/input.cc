@@ -256,6 +256,14 @@ class Run {
     say_what_is_left_out(*reader);
   }
 
+  static std::string unknown_prefix_text(std::uint64_t line, const std::string& prefix) {
+    return fmt::format(
+        "line {} has hex text after '{}', which is no time stamp that is known; these are: "
+        "[12.3], (12.3), 12.3, 1764000000, 10:00:00 or 10:00:00 AM, after 2026-11-24, "
+        "24.11.2026, 24/11/2026, Nov 24, Nov 24 2026 or no date, and then perhaps 'mote 2:'",
+        line, prefix.substr(0, prefix.find_last_not_of(" \t") + 1));
+  }
+
   static std::string unknown_format(Bytes beginning) {
     if (beginning.size() > 1 && beginning[0] + beginning[1] == 0xFF + 0xFE) {
       return "this is UTF-16 text, as PowerShell writes; 'iconv -f UTF-16 -t UTF-8 FILE' makes "
@@ -266,12 +274,7 @@ class Run {
              "of it (-l 230 for radio frames without FCS)";
     }
     if (const PrefixedLine line = find_prefixed_line(beginning); line.number != 0) {
-      const std::string prefix(line.prefix.begin(), line.prefix.end());
-      return fmt::format(
-          "line {} has hex text after '{}', which is no time stamp that is known; these are: "
-          "[12.3], (12.3), 12.3, 1764000000, 10:00:00 or 10:00:00 AM, after 2026-11-24, "
-          "24.11.2026, 24/11/2026, Nov 24, Nov 24 2026 or no date, and then perhaps 'mote 2:'",
-          line.number, prefix.substr(0, prefix.find_last_not_of(" \t") + 1));
+      return unknown_prefix_text(line.number, {line.prefix.begin(), line.prefix.end()});
     }
     return "this begins like no serial line, forwarder stream, pcap, pcapng or hex text; name it "
            "with --input-format, or try 'tshark -r FILE -w FILE.pcapng'";
@@ -290,8 +293,10 @@ class Run {
   void say_what_is_left_out(const Reader& reader) {
     const Reader::Noise noise = reader.noise();
     if (noise.lines != 0) {
-      remark(fmt::format("{} of its lines hold no packet; the first is line {}", noise.lines,
-                         noise.first));
+      std::string what = fmt::format("{} of its lines hold no packet; the first is line {}",
+                                     noise.lines, noise.first);
+      if (noise.prefixed != 0) what += "; " + unknown_prefix_text(noise.prefixed, noise.prefix);
+      remark(what);
     }
     for (const auto& [link_type, count] : passed_over_) {
       if (is_network_link(link_type)) {

@@ -68,6 +68,7 @@ const reflect::Protocol& read_spec(const std::string& spec) {
   add_requirements(read.model);
   if (names_file(spec)) {
     rubricc::load_specs({spec}, read.model, diagnostics, shipped_specs());
+    rubricc::add_am_frames(shipped_specs(), read.model, diagnostics);
   } else {
     rubricc::load_shipped_spec(spec, shipped_specs(), read.model, diagnostics);
   }
@@ -184,14 +185,16 @@ std::string dissector_with(const std::string& file) {
       rubricc::load_shipped_spec(name, shipped_specs(), model, diagnostics);
   }
   rubricc::load_specs({file}, model, diagnostics, shipped_specs());
+  rubricc::add_am_frames(shipped_specs(), model, diagnostics);
   require_sound(model, diagnostics, rubricc::CheckFor::kDissector);
   const auto& types = model.specs.back()->types;
   if (std::none_of(types.begin(), types.end(),
                    [](const auto& type) { return type->carrier == "serial"; })) {
-    text::print(stderr,
-                "rubric: {}: no type has '-carrier: serial', so that no packet leads to its "
-                "messages\n",
-                file);
+    text::print(
+        stderr,
+        "rubric: {}: no type has '-am-type' or '-carrier: serial', so no packet leads to its "
+        "messages\n",
+        file);
     exit_with(kExitInput);
   }
   return rubricc::emit_lua(model, model.specs.back()->id).front().text;
@@ -209,6 +212,14 @@ void OtherSpecs::look_closer(const reflect::Frame& frame) {
 }
 
 void OtherSpecs::look_closer(const reflect::Frame& frame, std::vector<Hint>& hints) {
+  if (chosen_.carrier_count == 0) {
+    said_.fill(true);
+    said_of_links_ = true;
+    hints.push_back({-1, fmt::format("rubric: {} has no type with '-am-type' or '-carrier', so no "
+                                     "frame leads to its types; --as TYPE reads bare ones\n",
+                                     chosen_.id)});
+    return;
+  }
   if (others_.empty()) {
     static std::mutex reading;  // Read specs are kept in one place.
     const std::lock_guard lock(reading);

@@ -19,20 +19,25 @@
 #include "conformance/explore/search.h"
 #include "conformance/selftest/mutants/hunt.h"
 #include "conformance/test/suite/cases.h"
+#include "conformance/trace/protocol.h"
 #include "tools/cli/command.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/output.h"
 #include "tools/commands/commands.h"
+#include "tools/commands/protocol_folder.h"
 
 namespace rubric::tools {
 namespace {
 
 using text::Json;
 
-const std::size_t kRules = reflect::requirements().size();
+constexpr const char* kCoverage = "coverage";
+
+std::size_t rule_count() { return reflect::requirements().size(); }
 
 struct CoverageOptions {
-  std::string cases;  ///< Empty: the kit's own.
+  std::string cases;     ///< Empty: the kit's own, or those of the protocol.
+  std::string protocol;  ///< A folder; empty: RUBICON.
   std::string format = "text";
 };
 
@@ -46,32 +51,40 @@ struct Touch {
   std::size_t mutants = 0;  // Named ones that break it.
 };
 
+// What the machine, the explorer and the mutants show is counted for the machine's protocol only.
 struct Coverage {
-  std::vector<Touch> rules{kRules};
+  bool has_machine = trace::protocol().has_machine;
+  std::vector<Touch> rules{rule_count()};
   std::size_t cases = 0;
   std::vector<std::string> problems;
 };
 
-bool is_wire(std::size_t i) { return std::strncmp(reflect::requirements()[i].id, "WIRE-", 5) == 0; }
+// Vectors cover the rules of the wire, which RUBICON's catalogue has apart.
+bool is_wire(std::size_t i) {
+  return trace::protocol().has_machine &&
+         std::strncmp(reflect::requirements()[i].id, "WIRE-", 5) == 0;
+}
 bool is_must(std::size_t i) { return std::strcmp(reflect::requirements()[i].level, "MUST") == 0; }
+
+void read_case(const std::string& file_name, const trace::Case& one, Coverage& coverage) {
+  ++coverage.cases;
+  for (const trace::Line* line : one.lines()) {
+    for (const std::string& name : line->requirements) {
+      const ReqId id = trace::requirement_id(name);
+      if (id == ReqId::kNone) {
+        coverage.problems.push_back(
+            fmt::format("{}:{}: the catalogue has no rule {}", file_name, line->place.line, name));
+        continue;
+      }
+      Touch& touch = coverage.rules[reflect::requirement_index(id)];
+      (line->op == trace::Op::kMustNot ? touch.negative : touch.positive).insert(one.name);
+    }
+  }
+}
 
 void read_cases(const mutants::Golden& golden, Coverage& coverage) {
   for (const trace::Parsed& file : golden.files()) {
-    for (const trace::Case& one : file.file.cases) {
-      ++coverage.cases;
-      for (const trace::Line* line : one.lines()) {
-        for (const std::string& name : line->requirements) {
-          const ReqId id = trace::requirement_id(name);
-          if (id == ReqId::kNone) {
-            coverage.problems.push_back(fmt::format("{}:{}: the catalogue has no rule {}",
-                                                    file.file_name, line->place.line, name));
-            continue;
-          }
-          Touch& touch = coverage.rules[reflect::requirement_index(id)];
-          (line->op == trace::Op::kMustNot ? touch.negative : touch.positive).insert(one.name);
-        }
-      }
-    }
+    for (const trace::Case& one : file.file.cases) read_case(file.file_name, one, coverage);
   }
   for (const mutants::CaseRef& ref : golden.broken()) {
     coverage.problems.push_back(ref.one->name + ": the machine does not pass it");
@@ -90,13 +103,16 @@ void run_cases(const mutants::Golden& golden, Coverage& coverage) {
 }
 
 // The explorer takes a plain function, so its results are kept here.
-std::vector<std::atomic<bool>> g_explored(kRules);
+std::vector<std::atomic<bool>>& explored_rules() {
+  static std::vector<std::atomic<bool>> kept(rule_count());
+  return kept;
+}
 
 void seen_step(machine::State& state, machine::Ticks now, const machine::Event& event,
                machine::Actions& actions) {
   machine::step(state, now, event, actions);
   for (const machine::Action& action : actions.all()) {
-    g_explored[reflect::requirement_index(action.requirement)] = true;
+    explored_rules()[reflect::requirement_index(action.requirement)] = true;
   }
 }
 
@@ -116,11 +132,11 @@ void explore(Coverage& coverage) {
     explore::Nodes nodes(options);
     explore::explore(nodes);
   }
-  for (std::size_t i = 0; i < kRules; ++i) coverage.rules[i].explored = g_explored[i];
+  for (std::size_t i = 0; i < rule_count(); ++i) coverage.rules[i].explored = explored_rules()[i];
 }
 
 void judge(Coverage& coverage) {
-  for (std::size_t i = 1; i < kRules; ++i) {
+  for (std::size_t i = 1; i < rule_count(); ++i) {
     if (is_wire(i)) continue;
     const reflect::Requirement& rule = reflect::requirements()[i];
     const Touch& touch = coverage.rules[i];
@@ -141,7 +157,24 @@ mutants::Golden golden_of(const CoverageOptions& options) {
   return mutants::Golden(std::move(files));
 }
 
+// Reads the traces of a protocol that no machine plays.
+Coverage read_protocol_cases(const std::vector<std::string>& traces) {
+  Coverage coverage;
+  const suite::Cases cases = suite::Cases::of(traces);
+  for (const suite::SuiteCase& one : cases.all()) {
+    read_case(one.file->file_name, *one.one, coverage);
+  }
+  judge(coverage);
+  return coverage;
+}
+
 Coverage measure(const CoverageOptions& options) {
+  if (!options.protocol.empty()) {
+    std::vector<std::string> traces;
+    if (!options.cases.empty()) traces.push_back(options.cases);
+    use_protocol(kCoverage, options.protocol, {}, traces);
+    return read_protocol_cases(traces);
+  }
   Coverage coverage;
   const mutants::Golden golden = golden_of(options);
   read_cases(golden, coverage);
@@ -159,7 +192,7 @@ Coverage measure(const CoverageOptions& options) {
 // Counts wire rules by level: those that are MUST, and the others.
 std::map<std::string, std::size_t> wire_levels() {
   std::map<std::string, std::size_t> levels;
-  for (std::size_t i = 1; i < kRules; ++i) {
+  for (std::size_t i = 1; i < rule_count(); ++i) {
     if (is_wire(i)) ++levels[reflect::requirements()[i].level];
   }
   return levels;
@@ -177,7 +210,7 @@ struct Totals {
 
 Totals total(const Coverage& coverage) {
   Totals totals;
-  for (std::size_t i = 1; i < kRules; ++i) {
+  for (std::size_t i = 1; i < rule_count(); ++i) {
     if (is_wire(i)) continue;
     const Touch& touch = coverage.rules[i];
     ++totals.rules;
@@ -192,57 +225,79 @@ Totals total(const Coverage& coverage) {
 }
 
 std::string text_of(const Coverage& coverage) {
-  std::string out = fmt::format("{:<14}{:<8}{:>6}{:>6}{:>12}{:>9}  {:<10}{:>7}\n", "rule", "level",
-                                "cases", "!>", "transitions", "ignores", "explored", "mutants");
-  for (std::size_t i = 1; i < kRules; ++i) {
+  std::size_t width = 13;
+  for (std::size_t i = 1; i < rule_count(); ++i) {
+    if (!is_wire(i)) width = std::max(width, std::strlen(reflect::requirements()[i].id));
+  }
+  std::string out = fmt::format("{:<{}} {:<8}{:>6}{:>6}", "rule", width, "level", "cases", "!>");
+  if (coverage.has_machine) {
+    out += fmt::format("{:>12}{:>9}  {:<10}{:>7}", "transitions", "ignores", "explored", "mutants");
+  }
+  out += '\n';
+  for (std::size_t i = 1; i < rule_count(); ++i) {
     if (is_wire(i)) continue;
     const Touch& touch = coverage.rules[i];
-    out += fmt::format("{:<14}{:<8}{:>6}{:>6}{:>12}{:>9}  {:<10}{:>7}\n",
-                       reflect::requirements()[i].id, reflect::requirements()[i].level,
-                       touch.positive.size(), touch.negative.size(), touch.transitions,
-                       touch.ignores, touch.explored ? "yes" : "-", touch.mutants);
+    const reflect::Requirement& rule = reflect::requirements()[i];
+    out += fmt::format("{:<{}} {:<8}{:>6}{:>6}", rule.id, width, rule.level, touch.positive.size(),
+                       touch.negative.size());
+    if (coverage.has_machine) {
+      out += fmt::format("{:>12}{:>9}  {:<10}{:>7}", touch.transitions, touch.ignores,
+                         touch.explored ? "yes" : "-", touch.mutants);
+    }
+    out += '\n';
   }
   const Totals totals = total(coverage);
   out += fmt::format(
-      "{} rules of behaviour, {} golden traces: {} rules with a case ({} positive, {} negative), "
-      "{} exercised on the machine, {} explored, {} with a named mutant\n",
-      totals.rules, coverage.cases, totals.with_case, totals.positive, totals.negative,
-      totals.exercised, totals.explored, totals.mutated);
-  out += "rules of the wire, which spec/vectors cover:";
-  for (const auto& [level, count] : wire_levels()) out += fmt::format(" {} {}", count, level);
+      "{} rules of behaviour, {} golden traces: {} rules with a case ({} positive, {} negative)",
+      totals.rules, coverage.cases, totals.with_case, totals.positive, totals.negative);
+  if (coverage.has_machine) {
+    out += fmt::format(", {} exercised on the machine, {} explored, {} with a named mutant",
+                       totals.exercised, totals.explored, totals.mutated);
+  }
   out += '\n';
+  if (coverage.has_machine) {
+    const std::map<std::string, std::size_t> levels = wire_levels();
+    out += "rules of the wire, which spec/vectors cover:";
+    for (const auto& [level, count] : levels) out += fmt::format(" {} {}", count, level);
+    out += '\n';
+  }
   for (const std::string& problem : coverage.problems) out += "problem: " + problem + '\n';
   return out;
 }
 
 std::string json_of(const Coverage& coverage) {
+  // Without a machine its counts are null.
+  const auto counted = [&](auto value) {
+    return coverage.has_machine ? Json(value) : Json::raw("");
+  };
   std::vector<Json> rules;
-  for (std::size_t i = 1; i < kRules; ++i) {
+  for (std::size_t i = 1; i < rule_count(); ++i) {
     if (is_wire(i)) continue;
     const Touch& touch = coverage.rules[i];
     rules.push_back(Json::object({{"id", reflect::requirements()[i].id},
                                   {"level", reflect::requirements()[i].level},
                                   {"positive", touch.positive.size()},
                                   {"negative", touch.negative.size()},
-                                  {"transitions", touch.transitions},
-                                  {"ignores", touch.ignores},
-                                  {"explored", touch.explored},
-                                  {"mutants", touch.mutants}}));
+                                  {"transitions", counted(touch.transitions)},
+                                  {"ignores", counted(touch.ignores)},
+                                  {"explored", counted(touch.explored)},
+                                  {"mutants", counted(touch.mutants)}}));
   }
   const Totals totals = total(coverage);
   const std::map<std::string, std::size_t> levels = wire_levels();
-  const Json out = Json::object({{"schema", "rubric.coverage/1"},
-                                 {"rules", Json::array(rules)},
-                                 {"cases", coverage.cases},
-                                 {"totals", Json::object({{"rules", totals.rules},
-                                                          {"with_case", totals.with_case},
-                                                          {"positive", totals.positive},
-                                                          {"negative", totals.negative},
-                                                          {"exercised", totals.exercised},
-                                                          {"explored", totals.explored},
-                                                          {"with_mutant", totals.mutated}})},
-                                 {"wire", Json::object({levels.begin(), levels.end()})},
-                                 {"problems", Json::array(coverage.problems)}});
+  const Json out =
+      Json::object({{"schema", "rubric.coverage/1"},
+                    {"rules", Json::array(rules)},
+                    {"cases", coverage.cases},
+                    {"totals", Json::object({{"rules", totals.rules},
+                                             {"with_case", totals.with_case},
+                                             {"positive", totals.positive},
+                                             {"negative", totals.negative},
+                                             {"exercised", counted(totals.exercised)},
+                                             {"explored", counted(totals.explored)},
+                                             {"with_mutant", counted(totals.mutated)}})},
+                    {"wire", Json::object({levels.begin(), levels.end()})},
+                    {"problems", Json::array(coverage.problems)}});
   return out.text() + '\n';
 }
 
@@ -250,6 +305,8 @@ int run_coverage(const CoverageOptions& options) {
   Coverage coverage;
   try {
     coverage = measure(options);
+  } catch (const cli::Ending&) {
+    throw;
   } catch (const std::exception& error) {
     text::print(stderr, "rubric: {}\n", error.what());
     return cli::kExitInput;
@@ -263,19 +320,20 @@ int run_coverage(const CoverageOptions& options) {
 
 void add_coverage(cli::Command& app) {
   auto options = std::make_shared<CoverageOptions>();
-  cli::Command& sub = app.add_subcommand("coverage", "Count what tests each rule");
+  cli::Command& sub = app.add_subcommand(kCoverage, "Count what tests each rule");
   sub.footer(
       "Counts for each rule of behaviour: golden traces that ask for it, golden traces that "
       "forbid\n"
       "something by it, steps of the machine that name it in these traces, and named mutants that\n"
-      "break it; and says whether the explorer meets it in small networks. Which rules of another\n"
-      "protocol its traces try, 'rubric test --protocol' says.\n"
+      "break it; and says whether the explorer meets it in small networks. Of another protocol's\n"
+      "rules it counts the golden traces.\n"
       "Exit codes: 0 covered, 1 a MUST without a case, a forbidding rule that no case attempts, "
       "or\n"
       "a case that is wrong, 64 usage, 66 the cases cannot be read, 74 output cannot be written.");
   sub.add_option("--cases", options->cases,
-                 "Read golden traces from this folder, in place of the kit's own")
+                 "Read golden traces from this folder, in place of the kit's own or the protocol's")
       .check(cli::given);
+  add_protocol_option(sub, options->protocol);
   sub.add_option("--format", options->format, "Print text or json")
       .one_of({"text", "json"})
       .show_default();

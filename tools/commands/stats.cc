@@ -24,7 +24,8 @@ constexpr const char* kStatsFooter =
     "A gap is the time between neighbouring frames of one file. A frame counts as repeated if the\n"
     "one before it with the same addresses, message and interface had the same seq_num.\n"
     "A line in use, and with --follow a file that grows, is counted until Ctrl-C.\n"
-    "Exit codes: 0 clean, 1 malformed frames were seen, 64 usage, 66 input cannot be read.";
+    "Exit codes: 0 clean, 1 malformed frames were seen, 64 usage, 66 an input is missing or\n"
+    "damaged (what can be read of all inputs is counted), 74 output cannot be written.";
 
 int run_stats(const StatsOptions& options) {
   const reflect::Protocol& protocol = cli::chosen_protocol(options.input);

@@ -64,6 +64,39 @@ class Coverage(Folder):
         self.assertNotEqual(done.returncode, 0)
         self.assertIn("J99-NOTHING", done.stdout + done.stderr)
 
+    def test_another_protocols_rules_are_counted(self):
+        ctp = ROOT / "conformance/protocols/ctp"
+        done = run("coverage", "--protocol", ctp, "--format", "json", text=True)
+        report = json.loads(done.stdout)
+        self.assertEqual((done.returncode, report["problems"]), (0, []), done.stderr)
+        rules = {rule["id"]: rule for rule in report["rules"]}
+        self.assertEqual(len(rules), 44)
+        self.assertGreater(rules["LOOP-DATA"]["positive"], 0)
+        self.assertIsNone(rules["LOOP-DATA"]["mutants"])  # There is no machine for it.
+        text = run("coverage", "--protocol", ctp, text=True).stdout
+        self.assertEqual(len(text.splitlines()), 1 + 44 + 1)
+        columns = {line.find(" MUST") for line in text.splitlines() if " MUST " in line}
+        self.assertEqual(len(columns), 1, text)
+
+    def test_another_protocols_missing_case_is_a_problem(self):
+        probes = self.folder / "probes"
+        run("new-protocol", "probes", cwd=self.folder)
+        self.assertEqual(run("coverage", "--protocol", probes).returncode, 0)
+        rules = probes / "requirements.yaml"
+        rules.write_text(
+            rules.read_text(encoding="utf-8")
+            + '\n- id: NEW-RULE\n  level: MUST\n  clause: new\n'
+            + '  sentence: "A node does something new."\n  source: "a test"\n',
+            encoding="utf-8",
+        )
+        done = run("coverage", "--protocol", probes, text=True)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("problem: NEW-RULE is a MUST without a case", done.stdout)
+        rules.unlink()
+        done = run("coverage", "--protocol", probes, text=True)
+        self.assertEqual(done.returncode, 66)
+        self.assertIn("requirements.yaml", done.stderr)
+
     def test_no_cases_are_an_error(self):
         done = coverage(self.folder)
         self.assertEqual(done.returncode, 66)

@@ -21,6 +21,8 @@ import unittest
 BUILD = ""
 LINTIAN = False
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tools/book"))
+import snippets  # pylint: disable=wrong-import-position
 # Lines and stations go on until somebody ends them, a large exploration for minutes.
 GOES_ON = re.compile(r"@|mqtt:|zep:|sf-server:|--follow|explore --motes|"
                      r"rubric (run|forward|monitor|proxy)")
@@ -304,6 +306,22 @@ class Install(unittest.TestCase):
             with contextlib.suppress(ProcessLookupError):
                 os.killpg(process.pid, signal.SIGKILL)
             process.communicate()
+
+    def test_the_commands_of_the_book_run_in_an_empty_folder(self):
+        """With what is installed in share/rubric, as README.md says. The others need the sources,
+        or wait for a minute."""
+        text = next(self.prefix.glob("**/doc/rubric/README.md")).read_text(encoding="utf-8")
+        texts = {"README.md": text}
+        for path in sorted((ROOT / "tools/book/chapters").glob("*.md")):
+            if path.name not in ("34-run.md", "50-library.md", "51-extend.md"):
+                texts[path.name] = path.read_text(encoding="utf-8")
+        worked = 0
+        for name, text in texts.items():
+            worked += len(snippets.blocks(text))
+            place = snippets.Installed(self.base / "book" / name, self.prefix)
+            with self.subTest(name):
+                self.assertEqual(snippets.renewed(text, place)[1], [])
+        self.assertGreater(worked, 60)
 
     def test_programs_know_no_folder_of_the_project(self):
         for name in ("rubric", "rubricc", "rubric-extcap"):

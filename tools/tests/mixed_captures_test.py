@@ -408,6 +408,13 @@ class Text(unittest.TestCase):
         self.assertEqual((code, len(out.splitlines())), (0, 2), err)
         self.assertIn("2 of its lines hold no packet; the first is line 1", err)
 
+    def test_lines_with_an_unknown_prefix_are_named(self):
+        log = f"{self.BLINK}\nhello\nmote1> {self.BLINK}\nmote2> {self.BLINK}\n"
+        code, out, err = self.decoded(log, "--format", "jsonl")
+        self.assertEqual((code, len(out.splitlines())), (0, 1), err)
+        self.assertIn("3 of its lines hold no packet; the first is line 2; line 3 has hex text "
+                      "after 'mote1>', which is no time stamp that is known", err)
+
     def test_mistakes_name_their_line(self):
         for text, where in ((f"{self.BLINK}\n# so far\n00 FF F\n", "line 3, character 8"),
                             (f"hello\n{self.BLINK}\n00 FF 0g\n", "line 3, character 8")):

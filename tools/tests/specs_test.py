@@ -339,6 +339,40 @@ class File(Folder):
         done = rubric("decode", "--spec", importing, stdin="")
         self.assertIn(f"{pipe}: error: {other}", done.stderr)
 
+    def test_messages_without_frames_get_those_of_tinyos(self):
+        message = PLAIN.replace("    seq:", "    -am-type: [0x2a, 0x2b]\n    seq:", 1)
+        file = self.file(message)
+        for line, framing in (("00 FFFF 0003 03 22 2A 01 0002", "hex"),
+                              ("61 88 07 22 00 01 00 03 00 3F 2B 01 00 02", "hex-radio"),
+                              ("61 88 07 22 00 01 00 03 00 2A 01 00 02", "hex-radio")):
+            done = rubric("decode", "--spec", file, "--input-format", framing, "--format", "jsonl",
+                          stdin=line)
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            frame = json.loads(done.stdout)
+            self.assertEqual((frame["message"], frame["am"]["src"]), ("pair", 3))
+            self.assertEqual(frame["fields"], {"a": 1, "b": 2})
+        done = rubric("encode", "--spec", file, "--as", "pair", "--format", "hex",
+                      stdin='{"a":1,"b":2}')
+        self.assertEqual(done.stdout, "00 FF FF 00 00 03 00 2A 01 00 02\n")
+        done = rubric("install-wireshark", "--dir", str(self.folder), "--spec", file)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        twice = self.file(message + """  other:
+    -am-type: 42
+    seq: [{id: c, type: u1}]
+""")
+        done = rubric("decode", "--spec", twice, stdin="")
+        self.assertEqual(done.returncode, 66)
+        self.assertRegex(done.stderr, r"plain\.ksy:\d+:\d+: error: .*42")
+
+    def test_a_file_that_no_frame_leads_to_is_told_once(self):
+        for command in ("decode", "stats"):
+            done = rubric(command, "--spec", self.file(PLAIN), stdin=f"{BLINK}\n{BLINK}\n")
+            self.assertEqual(done.returncode, 0)
+            self.assertEqual(done.stderr, "rubric: plain has no type with '-am-type' or "
+                                          "'-carrier', so no frame leads to its types; --as TYPE "
+                                          "reads bare ones\n")
+        self.assertNotIn("0xfff", rubric("decode", "--spec", self.file(PLAIN), stdin=BLINK).stdout)
+
     def test_wireshark_gets_the_file_as_well(self):
         file = self.file(pathlib.Path("spec/wire/run_time/blink_to_radio.ksy").read_text(
             encoding="utf-8").replace("id: blink_to_radio\n", "id: my_blink\n"), "my_blink.ksy")

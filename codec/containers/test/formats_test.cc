@@ -198,14 +198,24 @@ TEST(WireHex, WordsAndNumbersOfALogAreNoPackets) {
   EXPECT_EQ(reader->noise().lines, 5u);
 }
 
+TEST(WireHex, HexTextAfterAnUnknownPrefixIsTold) {
+  const std::string packet = "00 ff ff 00 00 04 22 06 00 02 00 01\n";
+  const auto reader = make_reader(InputFormat::kLog);
+  const std::string log = packet + "hello, world\n" + "mote1> " + packet + "mote2> " + packet;
+  EXPECT_EQ(read_all(*reader, view(log)).size(), 1u);
+  EXPECT_EQ(reader->noise().lines, 3u);
+  EXPECT_EQ(reader->noise().prefixed, 3u);
+  EXPECT_EQ(reader->noise().prefix, "mote1> ");
+}
+
 TEST(WireHex, StampsOfALogArePassedOver) {
   const std::string packet = "00 ff ff 00 00 04 22 06 00 02 00 01";
   for (const std::string stamp :
        {"[12.345] ", "[2026-11-24 13:55:05.123] ", "12.345 ", "1700000000.123456\t",
         "12:34:56.789 -> ", "Nov 24 13:55:05 ", "Dec  4 13:55:05 ", "2026-11-24 13:55:05,123 ",
         "2026-11-24T13:55:05+0100 ", "24/11/2026 13:55 ", "(1764000000.123) ",
-        "24.11.2026 10:00:00 ", "Nov 24 2026 10:00:00 ", "10:00:00 AM ",
-        "11/24/2026 10:00:00 pm "}) {
+        "24.11.2026 10:00:00 ", "Nov 24 2026 10:00:00 ", "10:00:00 AM ", "11/24/2026 10:00:00 pm ",
+        "2026-11-24 10:00:00|", "   0.123: ", "1700000000.123: ", "[12.345]: "}) {
     const std::string log = stamp + "serial@/dev/ttyUSB0:115200: resynchronising\n" + stamp +
                             packet + "\r\n" + stamp + "\n" + stamp + packet + "g\n";
     EXPECT_EQ(detect(view(log.substr(0, log.size() - 2))), InputFormat::kLog) << log;

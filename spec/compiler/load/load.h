@@ -20,6 +20,9 @@ void load_specs(const std::vector<std::string>& files, Model& model, Diagnostics
 /// Reads a spec of the library, as "<shipped>/name.ksy".
 void load_shipped_spec(const std::string& name, const Library& library, Model& model,
                        Diagnostics& diagnostics);
+/// Where the last spec has messages with `-am-type` and no `-carrier`, adds the frames of the
+/// library's spec none: TinyOS's, on serial lines and on the radio.
+void add_am_frames(const Library& library, Model& model, Diagnostics& diagnostics);
 /// Whose requirements a catalogue has: those of other protocols have fewer keys.
 enum class Catalogue : std::uint8_t { kRubicon, kOther };
 /// Reads a catalogue of requirements.

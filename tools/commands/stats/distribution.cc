@@ -17,21 +17,15 @@ std::size_t bucket_of(std::uint64_t value) {
   return static_cast<std::size_t>(shift) * (kExact / 2) + (value >> shift);
 }
 
-// Returns the middle of a bucket.
-std::uint64_t value_of(std::size_t bucket) {
-  if (bucket < kExact) return bucket;
-  const std::size_t shift = bucket / (kExact / 2) - 1;
-  const std::uint64_t kept = bucket - shift * (kExact / 2);
-  return (kept << shift) + (std::uint64_t{1} << shift) / 2;
-}
-
 }  // namespace
 
 void Gaps::take(std::int64_t gap_ns) {
-  const std::size_t bucket =
-      bucket_of(static_cast<std::uint64_t>(std::max<std::int64_t>(gap_ns, 0)));
-  if (bucket >= buckets_.size()) buckets_.resize(bucket + 1);
-  ++buckets_[bucket];
+  gap_ns = std::max<std::int64_t>(gap_ns, 0);
+  const std::size_t at = bucket_of(static_cast<std::uint64_t>(gap_ns));
+  if (at >= buckets_.size()) buckets_.resize(at + 1);
+  Bucket& bucket = buckets_[at];
+  ++bucket.count;
+  bucket.most_ns = std::max(bucket.most_ns, gap_ns);
   ++count_;
 }
 
@@ -40,9 +34,9 @@ std::int64_t Gaps::percentile(double percent) const {
   const double share = std::ceil(percent / 100 * static_cast<double>(count_));
   const auto wanted = std::max<std::uint64_t>(static_cast<std::uint64_t>(share), 1);
   std::uint64_t seen = 0;
-  for (std::size_t bucket = 0; bucket < buckets_.size(); ++bucket) {
-    seen += buckets_[bucket];
-    if (seen >= wanted) return static_cast<std::int64_t>(value_of(bucket));
+  for (const Bucket& bucket : buckets_) {
+    seen += bucket.count;
+    if (seen >= wanted) return bucket.most_ns;
   }
   return -1;
 }
