@@ -1,8 +1,8 @@
 // Makes one call of the C library fail, for tests (faults_test.py). Preloaded with LD_PRELOAD.
 //
-// FAIL_CALL names the call: open, read, write, rename, fsync, connect, accept or malloc; FAIL_AT says
-// which one after the begin of main(), counted from 1; FAIL_ERRNO is what it fails with. How many
-// there were goes to FAIL_COUNT, a file, when the program exits or calls _exit.
+// FAIL_CALL names the call: open, read, write, rename, fsync, connect, accept or malloc; FAIL_AT
+// says which one after the begin of main(), counted from 1; FAIL_ERRNO is what it fails with. How
+// many there were goes to FAIL_COUNT, a file, when the program exits or calls _exit.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/socket.h>
