@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "codec/containers/hex_reader.h"
+#include "codec/containers/link_record.h"
 #include "fuzz/support/readers.h"
 #include "fuzz/support/require.h"
 
@@ -62,8 +63,8 @@ void check_writer(const std::vector<Kept>& packets, const ReaderOptions& options
   for (const Kept& kept : packets) {
     const Framing framing = kept.packet.framing;
     const bool serial = framing == Framing::kHdlc || framing == Framing::kSf;
-    const bool as_flag = serial && !kept.bytes.empty() && kept.bytes[0] == '\x7E';
-    const bool held = kept.packet.error.fault == Fault::kNone && !kept.bytes.empty() && !as_flag;
+    const bool sound = kept.packet.error.fault == Fault::kNone && !kept.bytes.empty();
+    const bool held = sound && !(serial && begins_serial_frame(testing::view(kept.bytes)));
     require(writer.write(kept.get(), written) == held, "sound packets can be written");
     if (!held) continue;
     wanted.push_back(fuzz::placeless(kept));
@@ -71,6 +72,7 @@ void check_writer(const std::vector<Kept>& packets, const ReaderOptions& options
     Packet& packet = wanted.back().packet;
     packet.kind = packet.serial_seq = packet.crc = packet.fcs = kAbsent;
     if (packet.framing == Framing::kHdlc) packet.framing = Framing::kSf;
+    if (packet.framing == Framing::kRadio) packet.link_type = kLinkRadioNoFcs;
   }
   ReaderOptions plain;
   plain.hex_framing = options.hex_framing;

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
+#include <stdexcept>
 #include <system_error>
 #include <vector>
 
@@ -95,6 +97,17 @@ Fit fit_of(const reflect::Protocol& protocol, const Sample& sample) {
   return fit;
 }
 
+// Returns whether an error meets whoever opens or reads that file, however often.
+bool is_of_the_file(const std::error_code& error) {
+  constexpr std::errc kAll[] = {std::errc::no_such_file_or_directory,
+                                std::errc::permission_denied,
+                                std::errc::is_a_directory,
+                                std::errc::not_a_directory,
+                                std::errc::filename_too_long,
+                                std::errc::too_many_symbolic_link_levels};
+  return std::any_of(std::begin(kAll), std::end(kAll), [&](std::errc one) { return error == one; });
+}
+
 }  // namespace
 
 const reflect::Protocol& choose_spec(const InputOptions& options) {
@@ -106,8 +119,11 @@ const reflect::Protocol& choose_spec(const InputOptions& options) {
   try {
     if (lines::parse_address(file)) return usual;
     beginning = plain_beginning(beginning_of(file));
-  } catch (const std::exception&) {
+  } catch (const std::invalid_argument&) {
     return usual;  // Who reads the file says what is wrong.
+  } catch (const std::system_error& error) {
+    if (is_of_the_file(error.code())) return usual;
+    throw std::system_error(error.code(), file);  // The file may be read yet, by another spec.
   }
   const Sample sample = sample_of(options, view(beginning));
   const Fit usual_fit = fit_of(usual, sample);

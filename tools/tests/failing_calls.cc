@@ -1,8 +1,8 @@
 // Makes one call of the C library fail, for tests (faults_test.py). Preloaded with LD_PRELOAD.
 //
-// FAIL_CALL names the call: open, write, rename, fsync, connect, accept or malloc; FAIL_AT says
-// which one after the begin of main(), counted from 1; FAIL_ERRNO is what it fails with. How many
-// there were goes to FAIL_COUNT, a file, when the program exits or calls _exit.
+// FAIL_CALL names the call: open, read, write, rename, fsync, connect, accept or malloc; FAIL_AT
+// says which one after the begin of main(), counted from 1; FAIL_ERRNO is what it fails with. How
+// many there were goes to FAIL_COUNT, a file, when the program exits or calls _exit.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/socket.h>
@@ -101,6 +101,9 @@ std::FILE* fopen(const char* path, const char* mode) {
 }
 std::FILE* fopen64(const char* path, const char* mode) {
   return fails("open") ? nullptr : next<decltype(fopen)>("fopen64")(path, mode);
+}
+ssize_t read(int fd, void* bytes, std::size_t size) {
+  return fails("read") ? -1 : ::syscall(SYS_read, fd, bytes, size);
 }
 ssize_t write(int fd, const void* bytes, std::size_t size) {
   return fails("write") ? -1 : ::syscall(SYS_write, fd, bytes, size);

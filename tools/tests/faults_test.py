@@ -7,10 +7,13 @@ Usage: faults_test.py RUBRIC FAILING_CALLS
 """
 import errno
 import os
+import pathlib
 import re
+import shutil
 import socket
 import subprocess
 import sys
+import tempfile
 import threading
 import unittest
 
@@ -22,7 +25,8 @@ CAPTURE = FIRMWARE / "a_join_data.pcapng"
 OLD = b"an old file\n" * 100
 PATIENCE_S = 30
 PLACES = 40  # Of malloc: spread over all of them.
-# Every session writes @, which is there before.
+# Every session writes @, which is there before. @lines are JSON lines, @other is a capture of
+# another protocol, which decode finds out by itself.
 SESSIONS = (
     ("convert", CAPTURE, "-o", "@", "--format", "pcapng"),
     ("decode", CAPTURE, "--write", "@"),
@@ -33,9 +37,14 @@ SESSIONS = (
     ("test", "--target", "machine", "--cases", "j2.*", "--format", "junit", "--out", "@"),
     ("test", "--target", "machine:answers_members", "--cases", "j2.*", "--write-expect", "@"),
     ("chart", "j4.accept", "--out", "@"),
+    ("diff", "--target", "machine", "--target", "machine:answers_members", "--cases", "j2.*",
+     "--out", "@"),
+    ("encode", "@lines", "--format", "pcapng", "--output", "@"),
+    ("explore", "--motes", "1", "--calls", "1", "--loss", "--flaw", "no_fail", "--out", "@"),
+    ("decode", "@other", "--write", "@"),
 )
-FAILURES = {"open": errno.EMFILE, "write": errno.ENOSPC, "rename": errno.EIO, "fsync": errno.EIO,
-            "malloc": errno.ENOMEM}
+FAILURES = {"open": errno.EMFILE, "read": errno.EIO, "write": errno.ENOSPC,
+            "rename": errno.EIO, "fsync": errno.EIO, "malloc": errno.ENOMEM}
 
 
 def timeless(text):
@@ -77,6 +86,16 @@ class Forwarder:
 
 
 class Faults(testing.Folder):
+    @classmethod
+    def setUpClass(cls):
+        inputs = pathlib.Path(tempfile.mkdtemp(prefix="rubric-faults-"))
+        cls.addClassCleanup(shutil.rmtree, inputs)
+        cls.inputs = {"@lines": inputs / "lines.jsonl", "@other": inputs / "other.pcapng"}
+        cls.inputs["@lines"].write_bytes(
+            testing.run("decode", CAPTURE, "--format", "jsonl", "--count", "20").stdout)
+        testing.run("generate", "--spec", "oscilloscope", "--count", "30", "--seed", "1",
+                    "--format", "pcapng", "-o", cls.inputs["@other"])
+
     def setUp(self):
         super().setUp()
         self.old = self.folder / "old"
@@ -87,7 +106,8 @@ class Faults(testing.Folder):
                     FAIL_ERRNO=str(failure), FAIL_COUNT=str(self.count))
 
     def run_with(self, words, call, at, failure=errno.EIO):
-        words = [self.old if word == "@" else word for word in words]
+        places = {"@": self.old, **self.inputs}
+        words = [places.get(word, word) for word in words]
         return testing.run(*words, env=self.failing(call, at, failure), timeout=PATIENCE_S)
 
     def places(self, words, call):

@@ -116,6 +116,26 @@ class Files(Folder):
             self.assertEqual(process.wait(PATIENCE_S), OUTPUT)
         self.assert_untouched("convert")
 
+    def test_each_command_killed_at_any_point(self):
+        """Of each command: the old file stays, or the new one is whole."""
+        for words in WRITERS:
+            done = run(*written(words, self.old))
+            whole = len(self.old.read_bytes())
+            self.assertIn(done.returncode, (0, 1), words)
+            for part in range(6):
+                self.old.write_bytes(OLD)
+                process = subprocess.Popen([RUBRIC, *map(str, written(words, self.old))],
+                                           stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+                time.sleep(0.004 * part)
+                process.kill()
+                process.wait(PATIENCE_S)
+                now = self.old.read_bytes()
+                # Reports say how long their run took.
+                self.assertTrue(now == OLD or abs(len(now) - whole) < 40, (words, len(now), whole))
+                for path in self.folder.glob(".old.pcapng.*"):  # What a kill leaves beside it.
+                    path.unlink()
+                self.assertEqual(self.names(), ["old.pcapng"], words)
+
     def test_a_closed_pipe(self):
         for words in (("decode", CAPTURE), ("check", CAPTURE), ("stats", CAPTURE),
                       ("explain", "J4"), ("messages",), ("completion", "bash"), ("coverage",),
@@ -250,6 +270,24 @@ class Files(Folder):
         for text in ("", "0k", "5", "-1k", "5m", "k"):
             done = run("decode", SERIAL, "--write", self.folder / "y", "--rotate", text)
             self.assertEqual(done.returncode, USAGE, text)
+
+    def test_rotation_by_time(self):
+        data = SERIAL.read_bytes()
+        kept = self.folder / "run.pcapng"
+        with self.feeding("decode", "--format", "jsonl", "--write", kept,
+                          "--rotate", "1s") as process:
+            process.stdin.write(data[:2000])
+            process.stdin.flush()
+            process.stdout.readline()  # It is open.
+            time.sleep(1.1)
+            process.stdin.write(data[2000:])
+            process.stdin.close()
+            process.stdout.read()
+        self.assertEqual(process.returncode, 0)
+        second = self.folder / "run.2.pcapng"
+        counts = [len(run("decode", path).stdout.splitlines()) for path in (kept, second)]
+        self.assertGreater(min(counts), 3)
+        self.assertEqual(len(run("decode", SERIAL).stdout.splitlines()), sum(counts))
 
     def test_a_report_is_written_as_one(self):
         report = self.folder / "report"

@@ -527,6 +527,35 @@ TEST(Writers, TakeWhatTheyCanHold) {
   EXPECT_EQ(read_all(*reader, view(frame)).at(0).bytes, ack_packet);
 }
 
+// A packet may begin with a flag's byte: its line is refused if it would read as a serial line's.
+TEST(Writers, HexLinesReadBackAsPackets) {
+  const struct {
+    const char* bytes;
+    bool taken;
+  } rows[] = {
+      {"7e 10 00 01 02 03 04 05 06", true},
+      {"7e 45 00 01 02 03 04 05 06", false},
+      {"7e", false},
+      {"12 34 56 78 9a bc de f0", true},  // No time of day.
+  };
+  for (const auto& row : rows) {
+    const std::string bytes = from_hex(row.bytes);
+    Packet packet;
+    packet.framing = Framing::kSf;
+    packet.bytes = view(bytes);
+    std::string text;
+    EXPECT_EQ(HexWriter().write(packet, text), row.taken) << row.bytes;
+    ReaderOptions options;
+    options.hex_framing = Framing::kSf;
+    HexReader reader(options);
+    const std::vector<Kept> again = read_all(reader, view(text));
+    ASSERT_EQ(again.size(), row.taken ? 1U : 0U) << row.bytes;
+    if (row.taken) {
+      EXPECT_EQ(again[0].bytes, bytes);
+    }
+  }
+}
+
 struct DetectCase {
   const char* name;
   std::string input;

@@ -41,6 +41,7 @@ class Identifier {
     resolve_lines();
     for (std::uint32_t i = 0; i < run_.seen.size(); ++i) settle(i);
     name_devices(run_, out_);
+    say_what_is_left_out();
     compare_with_given();
     return std::move(out_);
   }
@@ -270,6 +271,13 @@ class Identifier {
         shown.push_back({logged.id, logged.island, index});
       }
     }
+  }
+
+  void say_what_is_left_out() {
+    if (streams_.left_out() == 0) return;
+    out_.facts.push_back("senders beyond the first " + std::to_string(streams_.all().size()) +
+                         ": " + std::to_string(streams_.left_out()) +
+                         " frames on the air, for which nobody is blamed");
   }
 
   // Compares the user's statements with what was found.

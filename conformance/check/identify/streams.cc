@@ -195,7 +195,10 @@ void Streams::guess_island(Stream& stream, std::uint32_t index, const IslandHint
 
 std::uint16_t Streams::open(std::uint32_t index, const IslandHint& hint) {
   const Observation& seen = run_.seen[index];
-  if (streams_.size() >= kStreamsMax) return kNobody;  // Bounded, whatever the capture holds.
+  if (streams_.size() >= kStreamsMax) {  // Bounded, whatever the capture holds.
+    ++left_out_;
+    return kNobody;
+  }
   Stream stream;
   stream.am = seen.frame.src;
   stream.dsn = seen.dsn;

@@ -57,6 +57,8 @@ class Streams {
   /// two.
   std::uint16_t assign(std::uint32_t index, bool& repeat);
   const std::vector<Stream>& all() const { return streams_; }
+  /// Returns how many frames belong to none since there are as many streams as are kept.
+  std::uint64_t left_out() const { return left_out_; }
   /// Notes that a base station sends the sink of `island` a message, which it may radiate.
   void heard_on_serial(const Net& net, std::uint16_t island);
   std::uint16_t sink_am() const { return sink_am_; }
@@ -86,6 +88,7 @@ class Streams {
   const Given given_;
   std::uint16_t sink_am_;
   std::vector<Stream> streams_;
+  std::uint64_t left_out_ = 0;
   std::vector<std::uint16_t> next_;       // Links streams of the same address.
   std::vector<std::uint16_t> first_of_;   // By AM address.
   std::vector<std::uint16_t> of_sender_;  // By number in Run::past.

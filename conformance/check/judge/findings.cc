@@ -64,7 +64,7 @@ void Findings::add(Finding finding) {
     before.last = finding.place;
     return;
   }
-  if (all_.size() >= kFindingsMax) {
+  if (!listed_.takes(finding)) {
     ++dropped_;
     return;
   }

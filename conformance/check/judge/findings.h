@@ -1,6 +1,8 @@
 // Collects findings: accepts differences of the profile, groups repeats, keeps within bounds.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -12,6 +14,32 @@
 #include "conformance/trace/parameters.h"
 
 namespace rubric::check {
+
+/// Counts the findings that are listed: so many of each severity that lesser ones keep no failure
+/// out.
+class Listed {
+ public:
+  static constexpr std::size_t kMost = 20'000;
+
+  Listed() = default;
+  explicit Listed(const std::vector<Finding>& findings) {
+    for (const Finding& finding : findings) ++counts_[index(finding)];
+  }
+  /// Returns whether the finding is to be listed, and counts it then.
+  bool takes(const Finding& finding) {
+    std::size_t& count = counts_[index(finding)];
+    if (count >= kMost) return false;
+    ++count;
+    return true;
+  }
+
+ private:
+  static std::size_t index(const Finding& finding) {
+    return static_cast<std::size_t>(finding.severity);
+  }
+
+  std::array<std::size_t, static_cast<std::size_t>(Severity::kFail) + 1> counts_{};
+};
 
 class Findings {
  public:
@@ -32,7 +60,6 @@ class Findings {
   std::vector<std::pair<ReqId, std::uint64_t>> exercised() const;
 
   static constexpr std::int64_t kEpisodeUs = 600'000;
-  static constexpr std::size_t kFindingsMax = 20'000;
 
  private:
   static constexpr std::int64_t kOpenUs = 5'000'000;  ///< Absences are found late.
@@ -47,6 +74,7 @@ class Findings {
   std::vector<std::int64_t> settled_us_;
   bool deployed_ = false;
   std::vector<Finding> all_;
+  Listed listed_;
   std::vector<std::size_t> open_;  // Episodes that may go on, in all_.
   std::uint64_t dropped_ = 0;
   std::vector<std::uint64_t> kept_;  // By place in the catalogue.

@@ -88,7 +88,7 @@ bool goes_on(const Finding& episode, const Finding& finding) {
 }
 
 // Adds a finding that comes after the others; returns false if there are too many.
-bool append(std::vector<Finding>& all, Finding finding, std::int64_t settled_us) {
+bool append(std::vector<Finding>& all, Listed& listed, Finding finding, std::int64_t settled_us) {
   for (std::size_t i = all.size(); i > 0; --i) {
     Finding& before = all[i - 1];
     if (before.last.time_us >= settled_us || !goes_on(before, finding)) {
@@ -99,7 +99,7 @@ bool append(std::vector<Finding>& all, Finding finding, std::int64_t settled_us)
     before.last = finding.last;
     return true;
   }
-  if (all.size() >= Findings::kFindingsMax) return false;
+  if (!listed.takes(finding)) return false;
   all.push_back(std::move(finding));
   return true;
 }
@@ -159,19 +159,25 @@ bool Follow::judge() {
   const bool settles = until_us - settled_us_ >= horizon_us_ && may_settle(until_us);
   run_.past.settled_us = {settled_us_};
   if (settles) run_.past.settled_us.push_back(until_us);
-  add_report(check::judge(run_, gone_.until_us >= 0 ? options_later_ : options_));
+  add_report(check::judge(run_, gone_.until_us >= 0 ? options_later_ : options_),
+             settles ? until_us : settled_us_);
   if (settles) settle(until_us);
   return true;
 }
 
-// Makes the report of all: what is settled, and what is found of the rest.
-void Follow::add_report(Report now) {
+// Makes the report of all: what is settled, and what is found of the rest, of which what is before
+// `settles_us` will be settled.
+void Follow::add_report(Report now, std::int64_t settles_us) {
   report_ = std::move(now);
   std::vector<Finding> fresh = std::exchange(report_.findings, settled_);
-  std::uint64_t more = more_;
+  Listed listed(settled_);
+  std::vector<Place> more;
   for (Finding& finding : fresh) {
-    const bool known = finding.place.in_order() && finding.place.time_us < settled_us_;
-    if (!known && !append(report_.findings, std::move(finding), settled_us_)) ++more;
+    const Place place = finding.place;
+    const bool known = place.in_order() && place.time_us < settled_us_;
+    if (!known && !append(report_.findings, listed, std::move(finding), settled_us_)) {
+      more.push_back(place);
+    }
   }
   report_.verdict = verdict_of(report_.findings);
   std::map<std::size_t, std::uint64_t> exercised = exercised_;
@@ -188,7 +194,13 @@ void Follow::add_report(Report now) {
                             " are no longer held: what is found there is settled, and what would "
                             "need them to be decided is inconclusive or not found (--keep).");
   }
-  if (more > 0) report_.facts.push_back(number(more) + " more findings are not listed.");
+  if (more_ + more.size() > 0) {
+    report_.facts.push_back(number(more_ + more.size()) + " more findings are not listed.");
+  }
+  more_ +=
+      static_cast<std::uint64_t>(std::count_if(more.begin(), more.end(), [&](const Place& place) {
+        return place.in_order() && place.time_us < settles_us;
+      }));
 }
 
 // Settles what was found before `until_us`.
@@ -201,8 +213,9 @@ void Follow::settle(std::int64_t until_us) {
   }
   settled_us_ = until_us;
   report_.findings = settled_;
+  Listed listed(settled_);
   for (Finding& finding : others) {
-    append(report_.findings, std::move(finding), settled_us_);
+    append(report_.findings, listed, std::move(finding), settled_us_);
   }
   for (const auto& [rule, count] : report_.exercised) {
     exercised_[reflect::requirement_index(rule)] = count;

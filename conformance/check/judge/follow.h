@@ -57,7 +57,7 @@ class Follow {
  private:
   bool may_settle(std::int64_t until_us) const;
   void settle(std::int64_t until_us);
-  void add_report(Report now);
+  void add_report(Report now, std::int64_t settles_us);
   void let_go();
 
   const Options& options_;

@@ -373,7 +373,6 @@ bool Forwarding::sent_on_radio(std::uint16_t sink, const Observation& seen, cons
 bool Forwarding::relayed(Line& line, const Observation& seen, const Net& net) {
   const bool mote = net.dest.pid == line.island && net.dest.devid != line.am &&
                     !machine::is_reserved(net.dest.devid);
-  const bool all = net.dest.pid == machine::kBroadcastPid;
   Passing* heard = nullptr;
   for (std::size_t i = 0; i < line.up.size(); ++i) {
     Passing& passing = line.up.newest(i);
@@ -387,9 +386,9 @@ bool Forwarding::relayed(Line& line, const Observation& seen, const Net& net) {
   const bool forbidden = heard->forbidden != ReqId::kNone && (!mote || !net.sound);
   const bool right = mote && !again && !forbidden && seen.frame.dest == net.dest.devid;
   if (heard->relayed < 255) ++heard->relayed;
-  if (right) return true;
-  // What is for every island it may send on once (decision 114).
-  if (all && !again && heard->passed == 0 && net.sound) return true;
+  // So it may what is for every island (decision 114).
+  const bool all = net.dest.pid == machine::kBroadcastPid && net.sound && heard->passed == 0;
+  if (right || (all && !again)) return true;
   const Severity severity = forbidden && heard->weak ? Severity::kWeak : Severity::kFail;
   context_.report(
       forbidden        ? heard->forbidden

@@ -70,19 +70,12 @@ PairWatch& SinkJoins::pair(SinkWatch& sink, std::uint16_t mote_am) {
 void SinkJoins::begin_life(std::uint16_t sink, std::int64_t since_us) {
   SinkWatch* const watch = find(sink);
   if (watch == nullptr) return;
-  for (auto& [am, pair] : watch->motes) {  // What came since then may be of the new life.
-    const bool heard = (pair.asked && pair.request.time_us >= since_us) ||
-                       (pair.ack.frame != 0 && pair.ack.time_us >= since_us);
-    PairWatch after;
-    if (heard) {
-      after.request = pair.request;
-      after.request_seq = pair.request_seq;
-      after.asked = pair.asked;
-      after.set.emplace_back().unknown = true;
-    }
-    pair = after;
-  }
-  std::erase_if(watch->motes, [](const auto& one) { return one.second.set.empty(); });
+  std::erase_if(watch->motes, [&](const auto& one) {
+    const PairWatch& mote = one.second;  // What came since then may be of the new life.
+    return !(mote.asked && mote.request.time_us >= since_us) &&
+           !(mote.ack.frame != 0 && mote.ack.time_us >= since_us);
+  });
+  for (auto& [am, mote] : watch->motes) mote.know_nothing();
   watch->has_clock = false;
   watch->debts = 0;
   watch->serial_off = false;
@@ -173,27 +166,13 @@ bool SinkJoins::hears(const Device& device, const Observation& seen, bool sure) 
   return !seen.received && (all || seen.frame.dest == device.am);
 }
 
-JoinSink list_of(const SinkHypothesis& h) {
-  JoinSink list;
-  if (h.member) list.members.push(*h.member);
-  if (h.pending) list.pending.push(*h.pending);
-  return list;
-}
-
-void take_list(const JoinSink& list, SinkHypothesis& h) {
-  h.member = list.members.empty() ? std::nullopt : std::optional(list.members[0]);
-  h.pending = list.pending.empty() ? std::nullopt : std::optional(list.pending[0]);
-}
-
 void SinkJoins::may_have_replied(const Observation& seen, const Reply& reply) {
   for (SinkWatch& sink : sinks_) {
     const Device& device = context_.device(sink.device);
     if (device.am != seen.frame.src || sink.island != reply.island || device.hearing) continue;
     PairWatch& mote = pair(sink, seen.frame.dest);
     if (mote.report_due) --sink.debts;
-    mote.report_due = false;
-    mote.set.assign(1, SinkHypothesis{});
-    mote.set.front().unknown = true;
+    mote.know_nothing();
   }
 }
 

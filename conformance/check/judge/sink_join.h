@@ -68,8 +68,16 @@ struct SinkHypothesis {
 };
 
 /// Converts between the machine's list and a hypothesis about one mote.
-machine::JoinSink list_of(const SinkHypothesis& h);
-void take_list(const machine::JoinSink& list, SinkHypothesis& h);
+inline machine::JoinSink list_of(const SinkHypothesis& h) {
+  machine::JoinSink list;
+  if (h.member) list.members.push(*h.member);
+  if (h.pending) list.pending.push(*h.pending);
+  return list;
+}
+inline void take_list(const machine::JoinSink& list, SinkHypothesis& h) {
+  h.member = list.members.empty() ? std::nullopt : std::optional(list.members[0]);
+  h.pending = list.pending.empty() ? std::nullopt : std::optional(list.pending[0]);
+}
 
 /// A sink and a mote.
 struct PairWatch {
@@ -85,6 +93,13 @@ struct PairWatch {
   bool report_due = false;           ///< Surely owed since `ack`, and not yet complained about.
   bool request_listed = false;       ///< The last request surely came while it was listed.
   bool cut_off = false;              ///< It was listed when the sink's island became another.
+
+  /// Takes the sink to list the mote, or not, and to owe nothing.
+  void know_nothing() {
+    set.assign(1, SinkHypothesis{});
+    set.front().unknown = true;
+    answered = report_due = request_listed = cut_off = false;
+  }
 };
 
 struct SinkWatch {

@@ -5,9 +5,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 
 #include "codec/reflect/requirements.h"
+#include "conformance/check/judge/findings.h"
 #include "conformance/check/test/failures.h"
 #include "conformance/check/test/testing.h"
 
@@ -422,6 +424,39 @@ TEST(Judge, AStandingClockPassesWhenDeployed) {
   const Report report = judge(script.run, options);
   EXPECT_EQ(text_of(report, Severity::kNote), "N6-CONTENT J3-TIME");
   EXPECT_EQ(report.verdict, Verdict::kPass);
+}
+
+// More senders than are followed: their frames blame nobody, and the report says so.
+TEST(Judge, SaysWhoIsNotFollowed) {
+  constexpr std::uint16_t kFollowed = 4096;
+  for (const std::uint16_t more : {std::uint16_t{0}, std::uint16_t{3}}) {
+    Script script;
+    for (std::uint16_t i = 0; i < kFollowed + more; ++i) {
+      script.request(i, static_cast<std::uint16_t>(100 + i), 7);
+    }
+    const Report report = judge(script.run, {});
+    const auto said = std::count(report.facts.begin(), report.facts.end(),
+                                 "senders beyond the first 4096: 3 frames on the air, for which "
+                                 "nobody is blamed");
+    EXPECT_EQ(said, more != 0 ? 1 : 0);
+  }
+}
+
+// A run may have more lesser findings than are listed; its failures are listed all the same.
+TEST(Judge, LesserFindingsKeepNoFailureOut) {
+  const std::vector<ClockStep> steady;
+  Findings findings(false, steady, {});
+  Finding finding;
+  finding.requirement = "J1-DEST"_rule;
+  finding.severity = Severity::kWeak;
+  for (std::size_t i = 0; i < Listed::kMost + 7; ++i) {
+    finding.place.time_us += Findings::kEpisodeUs + 1;
+    findings.add(finding);
+  }
+  finding.severity = Severity::kFail;
+  findings.add(finding);
+  EXPECT_EQ(findings.dropped(), 7U);
+  EXPECT_EQ(verdict_of(findings.take()), Verdict::kFail);
 }
 
 }  // namespace

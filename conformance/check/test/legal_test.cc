@@ -138,29 +138,29 @@ std::pair<std::uint64_t, std::uint64_t> seeds() {
   return {number, std::strtoull(end + 1, nullptr, 10)};
 }
 
-// The stamps are wrong and packets are missing; the nodes are honest all the same. RUBRIC_RECORDER
-// names one recorder, in place of all.
-TEST(Legal, NothingFailsHoweverItIsRecorded) {
+class Recorded : public testing::TestWithParam<lawful::Recorder> {};
+
+// The stamps are wrong and packets are missing; the nodes are honest all the same.
+TEST_P(Recorded, NothingFails) {
   const auto [first, last] = seeds();
+  const std::string how(GetParam().name);
   Count count;
   count.different = first == last;
-  for (const lawful::Recorder& recorder : lawful::recorders()) {
-    const std::string how(recorder.name);
-    if (const char* const one = std::getenv("RUBRIC_RECORDER"); one != nullptr && how != one)
-      continue;
-    for (std::uint64_t seed = first; seed <= last; ++seed) {
-      for (const lawful::Variant& variant : lawful::variants()) {
-        judge_both(std::string(variant.name), seed, how, count);
-      }
-      for (std::uint64_t mixed = 20 * seed - 19; mixed <= 20 * seed; ++mixed) {
-        judge_both("mixed", mixed, how, count);
-      }
+  for (std::uint64_t seed = first; seed <= last; ++seed) {
+    for (const lawful::Variant& variant : lawful::variants()) {
+      judge_both(std::string(variant.name), seed, how, count);
+    }
+    for (std::uint64_t mixed = 20 * seed - 19; mixed <= 20 * seed; ++mixed) {
+      judge_both("mixed", mixed, how, count);
     }
   }
-  std::printf("%llu judgements of %zu frames, %llu false alarms\n",
+  std::printf("%s: %llu judgements of %zu frames, %llu false alarms\n", how.c_str(),
               static_cast<unsigned long long>(count.judgements), count.frames.size(),
               static_cast<unsigned long long>(count.fails));
 }
+
+INSTANTIATE_TEST_SUITE_P(Legal, Recorded, testing::ValuesIn(lawful::recorders()),
+                         [](const auto& one) { return std::string(one.param.name); });
 
 }  // namespace
 }  // namespace rubric::check

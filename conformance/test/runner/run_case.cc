@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <map>
+#include <new>
 #include <optional>
 #include <set>
 #include <stdexcept>
@@ -79,6 +80,8 @@ class Run {
       }
     } catch (const trace::TraceError& error) {
       set_error(result, error.place(), error.what());
+    } catch (const std::bad_alloc&) {
+      throw;  // Says nothing of the case.
     } catch (const std::exception& error) {
       set_error(result, place_, error.what());
     }

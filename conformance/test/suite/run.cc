@@ -7,6 +7,7 @@
 #include <chrono>
 #include <exception>
 #include <mutex>
+#include <new>
 #include <thread>
 #include <utility>
 
@@ -151,6 +152,8 @@ CaseRun run_one(const SuiteCase& one, targets::Attachment& attachment, const std
     const targets::Identity& who = attachment.identity();
     out.owed = out.undecided() && !out.foreign && !who.own_line;
     out.whole = !who.own_line && !who.shown && !who.real_time;
+  } catch (const std::bad_alloc&) {
+    throw;                                 // Says nothing of the target.
   } catch (const std::exception& error) {  // It did not start again.
     out.result.verdict = CaseVerdict::kError;
     out.result.reason = error.what();
