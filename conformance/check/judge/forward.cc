@@ -381,12 +381,11 @@ bool Forwarding::relayed(Line& line, const Observation& seen, const Net& net) {
     if (passing.relayed < passing.copies) break;
   }
   if (heard == nullptr) return false;
-  // For another mote of its island it may, once, to that mote (decision 115).
+  // Once it may what is for a mote of its island, to it (decision 115), or for all (decision 114).
   const bool again = heard->relayed >= heard->copies;
   const bool forbidden = heard->forbidden != ReqId::kNone && (!mote || !net.sound);
   const bool right = mote && !again && !forbidden && seen.frame.dest == net.dest.devid;
   if (heard->relayed < 255) ++heard->relayed;
-  // So it may what is for every island (decision 114).
   const bool all = net.dest.pid == machine::kBroadcastPid && net.sound && heard->passed == 0;
   if (right || (all && !again)) return true;
   const Severity severity = forbidden && heard->weak ? Severity::kWeak : Severity::kFail;
