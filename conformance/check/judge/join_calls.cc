@@ -58,7 +58,8 @@ bool JoinCalls::request(std::uint16_t mote, const Observation& seen, const Reque
   } else if (fresh && before) {
     context_.findings.kept("J1-SEQ"_rule);
   }
-  if (calls.last->descriptor == request.descriptor) {
+  if (calls.last->descriptor == request.descriptor ||
+      (calls.earlier && calls.earlier->descriptor == request.descriptor)) {
     context_.findings.kept("J1-REQUEST"_rule);
   } else {
     context_.report("J1-REQUEST"_rule, Severity::kFail, seen.place, mote,
@@ -80,6 +81,9 @@ void JoinCalls::called(std::uint16_t mote, const Observation& seen,
         return h.unknown || h.join.phase != Phase::kOutside;
       });
   calls.waits = calls.open > 0;
+  // Which of two calls a failure ended is not told.
+  if (!calls.waits) calls.earlier.reset();
+  if (calls.waits && !calls.earlier) calls.earlier = calls.last;
   if (calls.open == 0) calls.off_us = 0;
   ++calls.open;
   calls.last = call;

@@ -30,7 +30,8 @@ class JoinCalls {
     bool logged = false;    ///< The log has join calls at all.
     std::int64_t open = 0;  ///< That have not ended.
     std::optional<machine::JoinIsland> last;
-    bool refusable = true;  ///< That one may fail at once.
+    std::optional<machine::JoinIsland> earlier;  ///< Open when the last one came.
+    bool refusable = true;                       ///< That one may fail at once.
     Place called;
     bool waits = false;                   ///< It came while another one ran.
     bool asks = false;                    ///< It owes a join_request.

@@ -90,7 +90,8 @@ void Bench::run() {
 void Bench::report_idle(bool timer_runs, Ticks due) {
   uint8_t flags = 0;
   if (timer_runs) flags |= kIdleTimerRuns;
-  if (serial_.is_sending()) flags |= kIdleSerialSends;
+  // A packet that has just left may be followed by what had no room beside it.
+  if (serial_.is_sending() || serial_.has_news()) flags |= kIdleSerialSends;
   if (reported_ && flags == told_flags_ && due == told_due_) return;
   reported_ = true;
   told_flags_ = flags;
