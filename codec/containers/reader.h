@@ -39,7 +39,7 @@ class Reader {
     std::uint64_t lines = 0;
     std::uint64_t first = 0;     ///< Its number, from 1.
     std::uint64_t prefixed = 0;  ///< Number of the first that has hex text after an unknown prefix.
-    std::string prefix = {};     ///< What is before that text.
+    std::string prefix = {};     ///< What that line begins with.
   };
   virtual Noise noise() const { return {}; }
 

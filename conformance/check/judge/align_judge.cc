@@ -216,8 +216,9 @@ Run without_logs(const Run& run) {
   return out;
 }
 
-// Judges a run of captures and logs. A failure or a weak finding remains if it is found wherever
-// the logs may lie, and without those of which nobody knows where; else it becomes inconclusive.
+// Judges a run of captures and logs. A failure or a weak finding remains if it is found at each
+// time at which the logs may have begun, and without the logs whose clocks are not known; else it
+// becomes inconclusive.
 Report judge_each_log(const Run& run, const Options& options) {
   const auto judged = [&](Run now) {
     now.logs.clear();

@@ -71,7 +71,7 @@ void SinkJoins::begin_life(std::uint16_t sink, std::int64_t since_us) {
   SinkWatch* const watch = find(sink);
   if (watch == nullptr) return;
   std::erase_if(watch->motes, [&](const auto& one) {
-    const PairWatch& mote = one.second;  // What came since then may be of the new life.
+    const PairWatch& mote = one.second;  // The new life may have heard what came since then.
     return !(mote.asked && mote.request.time_us >= since_us) &&
            !(mote.ack.frame != 0 && mote.ack.time_us >= since_us);
   });
