@@ -143,6 +143,7 @@ bool is_own_body(const Transmit& frame) {
 struct Field {
   std::string kind;
   std::string path;
+  std::string acts_on;
   friend auto operator<=>(const Field&, const Field&) = default;
 };
 
@@ -179,12 +180,15 @@ Mutants field_mutants(const Golden& golden) {
         const Transmit& frame = actions.transmit_of(action);
         const Anatomy parts = anatomy(frame);
         const std::string kind = sent_kind(action, frame, parts);
-        for (const FieldPlace& place : parts.places) sent.insert({kind, place.path});
+        for (const FieldPlace& place : parts.places) {
+          sent.insert({kind, place.path, kind_of(action, actions)});
+        }
       } else if (action.what == Action::What::kNotify) {
         const auto concrete = trace::concrete(events::from_notice(actions.notice_of(action)));
         for (const auto& leaf : concrete.leaves) {
-          told.insert({kind_of(action, actions), leaf.path});
-          if (leaf.domain.max == 1) yes_or_no.insert({kind_of(action, actions), leaf.path});
+          const std::string kind = kind_of(action, actions);
+          told.insert({kind, leaf.path, kind});
+          if (leaf.domain.max == 1) yes_or_no.insert({kind, leaf.path, kind});
         }
       }
     }
@@ -196,14 +200,16 @@ Mutants field_mutants(const Golden& golden) {
       out.push_back({name + field.kind + ": " + field.path,
                      "A field is something else.",
                      {},
-                     changed_frame(field.kind, field.path, how)});
+                     changed_frame(field.kind, field.path, how),
+                     field.acts_on});
     }
     for (const Field& field : told) {
       if (how == Change::kHighBit && yes_or_no.contains(field)) continue;
       out.push_back({name + field.kind + ": " + field.path,
                      "A field is something else.",
                      {},
-                     changed_notice(field.kind, field.path, how)});
+                     changed_notice(field.kind, field.path, how),
+                     field.acts_on});
     }
   }
   return out;

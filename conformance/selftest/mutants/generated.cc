@@ -13,19 +13,6 @@ namespace {
 
 constexpr Ticks kPeriodTicks = 1000;  // For the ack timeout; two of the join timer and the clock.
 
-class Watched : public runner::Machine {
- public:
-  explicit Watched(const Witness& see) : see_(see) {}
-  void step(Ticks now, const Event& event, Actions& actions) override {
-    const State before = state_;
-    Machine::step(now, event, actions);
-    see_(before, now, event, state_, actions);
-  }
-
- private:
-  const Witness& see_;
-};
-
 std::string text(ReqId requirement) { return std::string(trace::requirement_text(requirement)); }
 
 StepMaker at_kind(const std::string& kind, void (*act)(Moment&, const Action&)) {
@@ -105,12 +92,6 @@ StepMaker only(Role role, StepMaker make) {
 
 }  // namespace
 
-void watch(const Golden& golden, const Witness& see) {
-  for (const CaseRef& ref : golden.cases()) {
-    run(ref, [&] { return std::make_unique<Watched>(see); });
-  }
-}
-
 std::string kind_of(const Action& action, const Actions& actions) {
   if (action.what == Action::What::kTransmit) {
     return "send " + text(action.requirement) + " " + anatomy(actions.transmit_of(action)).name;
@@ -122,6 +103,16 @@ std::string kind_of(const Action& action, const Actions& actions) {
   return "";
 }
 
+std::set<std::string> kinds_of(const Actions& actions) {
+  std::set<std::string> kinds;
+  for (const Action& action : actions.all()) {
+    if (action.what == Action::What::kIgnored) kinds.insert("ignore " + text(action.requirement));
+    kinds.insert(kind_of(action, actions));
+  }
+  kinds.erase("");
+  return kinds;
+}
+
 Mutants action_mutants(const Golden& golden) {
   std::set<std::string> kinds;
   watch(golden, [&](const State&, Ticks, const Event&, const State&, const Actions& actions) {
@@ -129,17 +120,18 @@ Mutants action_mutants(const Golden& golden) {
   });
   kinds.erase("");
   Mutants out;
+  const auto act = [&](const std::string& name, const std::string& kind, const char* breaks,
+                       void (*how)(Moment&, const Action&)) {
+    out.push_back({name + ": " + kind, breaks, {}, at_kind(kind, how), kind});
+  };
   for (const std::string& kind : kinds) {
-    add(out, "drop: " + kind, "It does not happen.", {},
-        at_kind(kind, [](Moment&, const Action&) {}));
-    add(out, "double: " + kind, "It happens twice.", {},
-        at_kind(kind, [](Moment& moment, const Action& action) {
-          moment.keep(action);
-          moment.keep(action);
-        }));
-    add(out, "delay: " + kind, "It happens a period later.", {},
-        at_kind(kind,
-                [](Moment& moment, const Action& action) { moment.hold(action, kPeriodTicks); }));
+    act("drop", kind, "It does not happen.", [](Moment&, const Action&) {});
+    act("double", kind, "It happens twice.", [](Moment& moment, const Action& action) {
+      moment.keep(action);
+      moment.keep(action);
+    });
+    act("delay", kind, "It happens a period later.",
+        [](Moment& moment, const Action& action) { moment.hold(action, kPeriodTicks); });
   }
   return out;
 }
@@ -150,8 +142,11 @@ Mutants acceptance_mutants(const Golden& golden) {
     for (const std::size_t i : found) {
       const std::string name = "accept: " + text(ignored.requirement) + " " +
                                kRoles[static_cast<int>(ignored.role)] + " " + mends()[i].name;
-      add(out, name, "What the rule ignores is accepted.", {},
-          only(ignored.role, accepting(ignored.requirement, i)));
+      out.push_back({name,
+                     "What the rule ignores is accepted.",
+                     {},
+                     only(ignored.role, accepting(ignored.requirement, i)),
+                     "ignore " + text(ignored.requirement)});
     }
   }
   return out;

@@ -63,6 +63,23 @@ bool judge(const CaseRef& ref, const Mutant& mutant, Found& found) {
   return named;
 }
 
+class Watched : public runner::Machine {
+ public:
+  explicit Watched(const Witness& see) : see_(see) {}
+  void step(Ticks now, const Event& event, Actions& actions) override {
+    const State before = state_;
+    Machine::step(now, event, actions);
+    see_(before, now, event, state_, actions);
+  }
+
+ private:
+  const Witness& see_;
+};
+
+CaseResult run_watched(const CaseRef& ref, const Witness& see) {
+  return run(ref, [&] { return std::make_unique<Watched>(see); });
+}
+
 }  // namespace
 
 Golden::Golden(const std::string& folder) : Golden(runner::load_cases(folder)) {}
@@ -71,10 +88,21 @@ Golden::Golden(std::vector<trace::Parsed> files) : files_(std::move(files)) {
   for (const trace::Parsed& file : files_) {
     for (const trace::Case& one : file.file.cases) {
       const CaseRef ref{&file, &one};
-      const CaseResult result = run(ref, [] { return std::make_unique<runner::Machine>(); });
+      std::set<std::string>& kinds = kinds_[one.name];
+      const CaseResult result =
+          run_watched(ref, [&](const State&, Ticks, const Event&, const State&,
+                               const Actions& actions) { kinds.merge(kinds_of(actions)); });
       (result.verdict == CaseVerdict::kPass ? cases_ : broken_).push_back(ref);
     }
   }
+}
+
+bool Golden::acts(const Mutant& mutant, const std::string& case_name) const {
+  return mutant.acts_on.empty() || kinds_.at(case_name).contains(mutant.acts_on);
+}
+
+void watch(const Golden& golden, const Witness& see) {
+  for (const CaseRef& ref : golden.cases()) run_watched(ref, see);
 }
 
 CaseResult run(const CaseRef& ref, const runner::SubjectFactory& make) {
@@ -99,6 +127,7 @@ Found hunt(const Golden& golden, const Mutant& mutant) {
   Found found;
   for (const bool first : {true, false}) {
     for (const CaseRef& ref : golden.cases()) {
+      if (!golden.acts(mutant, ref.one->name)) continue;
       const bool speaks = !mutant.requirements.empty() && speaks_of(*ref.one, mutant);
       if (speaks == first && judge(ref, mutant, found)) return found;
     }

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <functional>
+#include <map>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -32,8 +34,13 @@ class Golden {
   const std::vector<CaseRef>& broken() const { return broken_; }
   const std::vector<trace::Parsed>& files() const { return files_; }
 
+  /// Returns whether the mutant may differ from the machine in the case of this name: the machine
+  /// does there what the mutant acts on.
+  bool acts(const Mutant& mutant, const std::string& case_name) const;
+
  private:
   std::vector<trace::Parsed> files_;
+  std::map<std::string, std::set<std::string>> kinds_;  // Of each case.
   std::vector<CaseRef> cases_;
   std::vector<CaseRef> broken_;
 };
@@ -84,6 +91,9 @@ void watch(const Golden& golden, const Witness& see);
 /// Returns the kind of an action: "send J3-REPLY join_reply", "tell J5-SUCCESS joined"; empty for
 /// labels.
 std::string kind_of(const Action& action, const Actions& actions);
+
+/// Returns the kind of each action, and "ignore N3-DUPLICATE" where it is a label.
+std::set<std::string> kinds_of(const Actions& actions);
 
 /// A field of a frame that can be changed.
 struct FieldPlace {

@@ -17,6 +17,9 @@ struct Mutant {
   std::string breaks;               ///< In a sentence.
   std::vector<ReqId> requirements;  ///< Rules that it breaks: a failing line must name one.
   StepMaker step;
+  /// What the machine must do before the mutant differs from it: kinds_of() has the word. Empty:
+  /// anything.
+  std::string acts_on = {};
 
   runner::SubjectFactory factory() const { return wrapped(step); }
 };
