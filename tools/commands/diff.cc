@@ -102,10 +102,10 @@ void add_diff(cli::Command& app) {
       .repeatable();
   sub.add_option("--cases", options->selection.globs, "Compare only cases with such names")
       .repeatable();
-  sub.add_option("--requirement", options->selection.requirements,
+  sub.add_option("--rule", options->selection.requirements,
                  "Compare only cases that try this rule or family")
       .repeatable();
-  for (const char* name : {"--target", "--profile", "--cases", "--requirement"}) {
+  for (const char* name : {"--target", "--profile", "--cases", "--rule"}) {
     sub.get_option(name).one_at_a_time();  // One at a time: traces may follow.
   }
   add_player_options(sub, options->shared);

@@ -58,9 +58,9 @@ constexpr const char* kTestFooter =
     "with those of --protocol DIR.\n"
     "Examples:\n"
     "  rubric test --target ./my_adapter\n"
-    "  rubric test --target 'python3 mote.py' --role mote --requirement J --quiet\n"
+    "  rubric test --target 'python3 mote.py' --role mote --rule J --quiet\n"
     "  rubric test --target ./a --target ./b --jobs 4 --expect known.yaml --report out\n"
-    "  rubric test --list --requirement J4-SEQ\n"
+    "  rubric test --list --rule J4-SEQ\n"
     "  rubric test --protocol my_protocol --target 'python3 my_protocol/node.py'\n"
     "Before its first case each implementation has to refuse an unknown command, and to fail\n"
     "cases that no implementation can pass.\n"
@@ -361,7 +361,7 @@ void add_selection(cli::Command& command, TestOptions& options) {
   command.add_option("--cases", options.selection.globs, "Run only cases with such names: 'j4.*'")
       .check(cli::given);
   command
-      .add_option("--requirement", options.selection.requirements,
+      .add_option("--rule", options.selection.requirements,
                   "Run only cases that try this rule or family: J4-SEQ, J4, J")
       .check(cli::given);
   command.add_option("--role", options.role, "Run only cases with a node of this role under test")
@@ -438,7 +438,7 @@ void add_options(cli::Command& command, TestOptions& options) {
                   "Wrap text at this many columns (default: the terminal's, else 100)")
       .between(cli::kColumnsMin, std::size_t{1000});
   cli::add_color_option(command, options.color);
-  for (const char* name : {"--target", "--cases", "--requirement"}) {
+  for (const char* name : {"--target", "--cases", "--rule"}) {
     command.get_option(name).one_at_a_time();  // One at a time.
   }
 }

@@ -66,7 +66,7 @@ class Completion(Folder):
         self.assertEqual(bash("rubric", "decode", "--spec", "blink"), ["blink_to_radio"])
         self.assertEqual(bash("rubric", "decode", "--as", "join_rep"), ["join_reply"])
         self.assertEqual(bash("rubric", "decode", "--fields", "frame.rs"), ["frame.rssi"])
-        self.assertEqual(bash("rubric", "test", "--requirement", "J4-SE"), ["J4-SEQ"])
+        self.assertEqual(bash("rubric", "test", "--rule", "J4-SE"), ["J4-SEQ"])
         self.assertIn("j4.wrong_seq", bash("rubric", "test", "--cases", "j4.w"))
         self.assertEqual(fish("rubric explain J4-SE", self.folder), ["J4-SEQ"])
         self.assertIn("J4-SEQ", zsh("rubric explain J4-SE", self.folder))

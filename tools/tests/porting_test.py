@@ -53,11 +53,11 @@ def failure():
             shutil.copy(ADAPTER / name, folder)
         mote = pathlib.Path(folder) / bug["file"]
         mote.write_text(mote.read_text().replace(bug["old"], bug["new"]))
-        tried = rubric("test", "--target", "python3 adapter.py", "--requirement", "J4-SEQ",
+        tried = rubric("test", "--target", "python3 adapter.py", "--rule", "J4-SEQ",
                        "--quiet", folder=folder)
     if tried.returncode != 1:
         raise RuntimeError(f"rubric test ended with {tried.returncode}\n{tried.stderr}")
-    return ("$ rubric test --target 'python3 adapter.py' --requirement J4-SEQ --quiet\n" +
+    return ("$ rubric test --target 'python3 adapter.py' --rule J4-SEQ --quiet\n" +
             tried.stdout)
 
 

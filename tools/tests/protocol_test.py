@@ -189,7 +189,7 @@ class Protocol(testing.Folder):
                 (("--protocol", "probes", "--state", "members=3"),
                  "'members' is no parameter that can be stated; known are response"),
                 (("--protocol", "probes", "--target", "machine"), "are for RUBICON; probes needs"),
-                (("--protocol", "probes", "--requirement", "J4"), "no rule is called 'J4'")]:
+                (("--protocol", "probes", "--rule", "J4"), "no rule is called 'J4'")]:
             with self.subTest(words):
                 code, _, err = self.rubric("test", "--target", "true", *words)
                 self.assertIn(code, (64, 66), err)
@@ -212,7 +212,7 @@ class Protocol(testing.Folder):
         self.assertIn("it does not refuse an unknown command", out)
 
     def test_rubicon_is_as_it_was(self):
-        code, out, err = self.rubric("test", "--list", "--requirement", "J4-SEQ")
+        code, out, err = self.rubric("test", "--list", "--rule", "J4-SEQ")
         self.assertEqual((code, err), (0, ""))
         self.assertIn("j4.wrong_seq", out)
 

@@ -131,7 +131,7 @@ class Diff(unittest.TestCase):
 
     def test_a_mutant_and_the_machine(self):
         code, out, err = run("diff", "--target", "machine", "--target", BROKEN,
-                             "--requirement", "J4")
+                             "--rule", "J4")
         self.assertEqual(code, 1, err)
         self.assertIn(".difference", out)
         self.assertIn("; A, ", out)
@@ -139,7 +139,7 @@ class Diff(unittest.TestCase):
 
     def test_the_profiles(self):
         code, out, err = run("diff", "--target", "machine", "--target", "machine", "--profile",
-                             "paper", "--profile", "deployed", "--requirement", "J8")
+                             "paper", "--profile", "deployed", "--rule", "J8")
         self.assertEqual(code, 1, err)
         self.assertIn("J8", out)
 

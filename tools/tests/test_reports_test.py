@@ -17,13 +17,13 @@ class Expectations(Folder):
     ENTRY = "- case: j8.%s\n  requirement: J8\n  message: %s\n  reason: It is in a hurry.\n"
 
     def failing(self):
-        report = json.loads(test("--target", self.impatient_mote(), "--requirement", "J8",
+        report = json.loads(test("--target", self.impatient_mote(), "--rule", "J8",
                                  "--format", "json")[1])
         return {c["name"]: c["failures"] for c in report["implementations"][0]["cases"]
                 if c["verdict"] == "fail"}
 
     def against(self, text):
-        return test("--target", self.impatient_mote(), "--requirement", "J8", "--expect",
+        return test("--target", self.impatient_mote(), "--rule", "J8", "--expect",
                     self.write("known.yaml", text))
 
     def test_known(self):
@@ -139,7 +139,7 @@ class Formats(Folder):
 
     def test_compare(self):
         """The changes since an earlier run."""
-        args = ["--requirement", "J8", "--role", "mote"]
+        args = ["--rule", "J8", "--role", "mote"]
         test("--target", HONEST, *args, "--report", self.folder / "before")
         before = self.folder / "before" / "report.json"
         code, out, _ = test("--target", self.impatient_mote(), *args, "--compare", before)
@@ -166,7 +166,7 @@ class Formats(Folder):
         self.assertRegex(test(*args, "--verbose")[1], r"1 pass in [0-9.]+ s\.")
 
     def test_annotations_in_actions(self):
-        _, _, err = test("--target", self.impatient_mote(), "--requirement", "J8",
+        _, _, err = test("--target", self.impatient_mote(), "--rule", "J8",
                          env={"GITHUB_ACTIONS": "true"})
         self.assertIn("::error file=conformance/cases/j8.rtr,line=", err)
 
@@ -183,7 +183,7 @@ class Formats(Folder):
 
 class Usage(Folder):
     def test_list(self):
-        code, out, err = test("--list", "--requirement", "J4-SEQ")
+        code, out, err = test("--list", "--rule", "J4-SEQ")
         self.assertEqual((code, err), (0, ""))
         self.assertRegex(out, r"(?m)^j4\.wrong_seq +mote +.*J4-SEQ")
         for line in out.splitlines():
@@ -196,8 +196,8 @@ class Usage(Folder):
             ([], "--target is required"),
             (["--target", ""], "--target"),
             (["--target", "machine", "--cases", "j4.acept"], "did you mean 'j4.accept'?"),
-            (["--target", "machine", "--requirement", "J44"], "no rule is called 'J44'"),
-            (["--target", "machine", "--requirement", "WIRE-PCAP"], "no case tries WIRE-PCAP"),
+            (["--target", "machine", "--rule", "J44"], "no rule is called 'J44'"),
+            (["--target", "machine", "--rule", "WIRE-PCAP"], "no case tries WIRE-PCAP"),
             (["--target", "machine", "--cases", "j4.*", "--role", "base_station"], "no case has"),
             (["--target", "machine", "--role", "moat"], "--role"),
             (["--target", "machine", "--profile", "papr"], "--profile"),

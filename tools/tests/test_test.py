@@ -130,7 +130,7 @@ class Running(Folder):
     def test_what_is_stated_moves_the_windows(self):
         """A mote with timers of its own passes when it states them, in hello or by --state."""
         slow = self.mote_with("JOIN_PERIOD = 500", "JOIN_PERIOD = 1024")
-        some = ["--role", "mote", "--requirement", "J", "--quiet"]
+        some = ["--role", "mote", "--rule", "J", "--quiet"]
         self.assertEqual(test("--target", slow, *some)[0], 1)
         code, out, _ = test("--target", slow, "--state", "join_period=1024", *some)
         self.assertEqual(code, 0, out)
@@ -152,7 +152,7 @@ class Running(Folder):
         out = test("--target", "machine", "--state", "join_requests=7", "--cases", "j8.*")[1]
         self.assertRegex(" ".join(out.split()),
                          r"skip j8\.at_most_five the case is for join_requests=5")
-        code, out, _ = test("--target", "machine", "--state", "channels=1", "--requirement", "S")
+        code, out, _ = test("--target", "machine", "--state", "channels=1", "--rule", "S")
         self.assertEqual(code, 0, out)
         self.assertIn("the case is for channels=2..8, and channels=1 is stated",
                       " ".join(out.split()))
@@ -170,7 +170,7 @@ class Running(Folder):
 
     def test_several_targets(self):
         code, out, _ = test("--target", "machine", "--target", self.impatient_mote(),
-                            "--requirement", "J8")
+                            "--rule", "J8")
         self.assertEqual(code, 1)
         self.assertIn("rubric_machine 1 plays mote, sink, base_station", out)
         self.assertIn("rubric_python_mote 1.0 plays mote", out)
@@ -194,10 +194,10 @@ class Running(Folder):
             self.assertIn("65535", err)
 
     def test_list_as_json(self):
-        code, out, _ = test("--list", "--format", "json", "--requirement", "J4-SEQ")
+        code, out, _ = test("--list", "--format", "json", "--rule", "J4-SEQ")
         listed = json.loads(out)
         self.assertEqual((code, listed["schema"]), (0, "rubric.test.list/1"))
-        lines = test("--list", "--requirement", "J4-SEQ")[1].splitlines()
+        lines = test("--list", "--rule", "J4-SEQ")[1].splitlines()
         self.assertEqual([one["name"] for one in listed["cases"]],
                          [line.split()[0] for line in lines])
         for one in listed["cases"]:
@@ -217,7 +217,7 @@ class Running(Folder):
     def test_cases_beyond_reach_are_one_sentence(self):
         """An adapter may show some links of its node only."""
         partial = f"{HONEST} | sed -u s/time=virtual/'& links=app,serial'/"
-        code, out, _ = test("--target", partial, "--role", "mote", "--requirement", "J8")
+        code, out, _ = test("--target", partial, "--role", "mote", "--rule", "J8")
         self.assertEqual(code, 3)
         self.assertNotRegex(out, "(?m)^inconclusive ")
         self.assertRegex(out, r"The attached links decide 0 of \d+ cases; the others need radio as")
@@ -289,7 +289,7 @@ class Failing(Folder):
         self.assertGreater(len(listed & asks), 200)
 
     def test_again_shows_it_again(self):
-        out = test("--target", self.impatient_mote(), "--requirement", "J8", "--seed", "3",
+        out = test("--target", self.impatient_mote(), "--rule", "J8", "--seed", "3",
                    "--verbose")[1]
         commands = re.findall(r"^  Again:    rubric (.*)$", out, re.M)
         self.assertGreater(len(commands), 0)
