@@ -85,15 +85,20 @@ function(rubric_embed_files output)
     DEPENDS ${paths} ${script} VERBATIM)
 endfunction()
 
-# What all tests include, compiled once.
+# What all tests include, and all replays of fuzz targets, compiled once each.
 if(RUBRIC_TESTS)
-  # A program, as precompiled headers fit code of their own kind alone.
-  file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/test_headers.cc CONTENT "int main() {}\n")
-  add_executable(rubric_test_headers ${PROJECT_BINARY_DIR}/test_headers.cc)
-  target_link_libraries(rubric_test_headers PRIVATE rubric_options GTest::gmock fmt::fmt)
-  target_compile_options(rubric_test_headers PRIVATE -O0)
-  target_precompile_headers(rubric_test_headers PRIVATE <gmock/gmock.h> <gtest/gtest.h>
-    <fmt/format.h> <algorithm> <fstream> <map> <optional> <set> <string> <variant> <vector>)
+  # Programs, as precompiled headers fit code of their own kind alone.
+  file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/headers.cc CONTENT "int main() {}\n")
+  foreach(kind test replay)
+    add_executable(rubric_${kind}_headers ${PROJECT_BINARY_DIR}/headers.cc)
+    target_link_libraries(rubric_${kind}_headers PRIVATE rubric_options fmt::fmt)
+    target_compile_options(rubric_${kind}_headers PRIVATE -O0)
+    target_precompile_headers(rubric_${kind}_headers PRIVATE <fmt/format.h> <algorithm> <fstream>
+      <map> <optional> <set> <string> <variant> <vector>)
+  endforeach()
+  target_link_libraries(rubric_test_headers PRIVATE GTest::gmock)
+  target_precompile_headers(rubric_test_headers PRIVATE <gmock/gmock.h> <gtest/gtest.h>)
+  set_target_properties(rubric_replay_headers PROPERTIES EXCLUDE_FROM_ALL ON)
 endif()
 
 # What tests are labelled: fast, of which all together take less than a minute; slow; waits, what
@@ -267,7 +272,7 @@ function(rubric_fuzzer name)
     add_executable(${target}_replay targets/${target}.cc)
     target_link_libraries(${target}_replay PRIVATE ${libraries} rubric_replay fmt::fmt)
     target_compile_options(${target}_replay PRIVATE -O0)
-    target_precompile_headers(${target}_replay REUSE_FROM rubric_test_headers)
+    target_precompile_headers(${target}_replay REUSE_FROM rubric_replay_headers)
     if(RUBRIC_SANITIZE)
       rubric_script_test(${target}_replay FOREIGN COMMAND ${target}_replay ${corpus})
     else()
