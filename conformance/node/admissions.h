@@ -24,10 +24,14 @@ struct Admission {
 
 class Admissions {
  public:
-  /// Borrows places for `members_max` and kOpenJoinsMax more.
-  Admissions(Admission* places, uint8_t members_max)
-      : entries_(places), members_max_(members_max) {}
+  /// Borrows places for `room` members and kOpenJoinsMax more.
+  Admissions(Admission* places, uint8_t room) : entries_(places), room_(room) {}
   void clear() { count_ = members_ = 0; }
+  /// Clears the list, for so many members, if there is room.
+  void reset(uint8_t members) {
+    members_max_ = members < room_ ? members : room_;
+    clear();
+  }
   /// Handles a join_request; returns true if it is to be answered.
   bool request(uint16_t devid, uint16_t seq_num, const Descriptor& descriptor);
   /// Handles an ack_join for this island; returns the new member, whose report is owed, or null.
@@ -45,7 +49,8 @@ class Admissions {
   Admission& add();
 
   Admission* entries_;
-  uint8_t members_max_;
+  uint8_t room_;
+  uint8_t members_max_ = 0;
   uint8_t count_ = 0;
   uint8_t members_ = 0;
 };

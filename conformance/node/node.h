@@ -30,6 +30,7 @@ struct Setup {
   /// How many ticks longer timers run: 1 with a clock that rounds down, as the tick in which they
   /// begin has partly gone.
   uint8_t slack = 0;
+  uint8_t members = 0xFF;  ///< Of a sink's list, if there is room.
 };
 
 /// The memory that a node borrows.

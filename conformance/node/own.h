@@ -33,7 +33,7 @@ inline void Node::start(const Setup& setup) {
   }
   channels_.reset(setup.channels);
   awaiting_.reset(setup.last_seq_num);
-  admissions_.clear();
+  admissions_.reset(setup.members);
   join_ = Join();
   now_ = setup.now;
   clock_offset_ms_ = 0 - time_ms();

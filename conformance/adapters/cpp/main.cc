@@ -102,7 +102,7 @@ bool Adapter::answer(const std::string& line) {
 }
 
 // The parameters that `reset` may set.
-const std::string kSettings = " id island channels seed profile gone_after ";
+const std::string kSettings = " id island channels seed profile members gone_after ";
 
 std::string Adapter::closing(const std::vector<std::string>& words) {
   if (words.size() == 2 && words[0] == "hello") {
@@ -161,6 +161,7 @@ void Adapter::reset(const std::vector<std::string>& words) {
   setup_.channels = arguments.number<std::uint8_t>("channels");
   const auto seed = arguments.number<std::uint64_t>("seed");
   setup_.last_seq_num = static_cast<std::uint16_t>(999 + 257 * seed);
+  if (arguments.has("members")) setup_.members = arguments.number<std::uint8_t>("members");
   gone_after_ = arguments.has("gone_after") ? arguments.number<Ticks>("gone_after") : 0;
   now_ = 0;
   taken_.clear();
