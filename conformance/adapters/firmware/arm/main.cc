@@ -19,6 +19,7 @@ static_assert(uint64_t{kTickParts} * kTicksPerSecond == uint64_t{kHertz} * kPart
 uint16_t kept_seq_num __attribute__((section(".noinit")));
 
 volatile bool ticked;
+volatile uint16_t serial_bytes;
 
 uint8_t record[kRecordMax];
 volatile uint8_t record_size;  // 0: none yet.
@@ -52,6 +53,7 @@ class Arm : public Board {
     at(kTimer0 + kTimerControl) = 1;
     at(kInterruptEnable) = kTimer0Interrupt;
   }
+  uint16_t serial_bytes() const override { return ::serial_bytes; }
   uint16_t& kept_seq_num() override { return ::kept_seq_num; }
   void restart() override {
     at(kResetControl) = kResetRequest;
@@ -122,6 +124,7 @@ extern "C" void uart0_handler() {
   at(kUart0 + kUartClear) = kReceiveInterrupts | kTransmitInterrupt;
   while ((at(kUart0 + kUartFlags) & kReceiveEmpty) == 0) {
     serial.byte_received(static_cast<uint8_t>(at(kUart0 + kUartData)));
+    serial_bytes = serial_bytes + 1;
   }
   while ((at(kUart0 + kUartFlags) & kTransmitFull) == 0) {
     uint8_t byte;

@@ -22,6 +22,7 @@ uint16_t kept_seq_num __attribute__((section(".noinit")));
 
 volatile Ticks ticks;
 volatile bool ticked;
+volatile uint16_t serial_bytes;
 
 // Records of the bench, one at a time.
 uint8_t record[kRecordMax];
@@ -31,13 +32,8 @@ uint8_t record_filled;
 
 class Avr : public Board {
  public:
-  Ticks now() const override {
-    const uint8_t status = SREG;
-    cli();
-    const Ticks value = ticks;
-    SREG = status;
-    return value;
-  }
+  Ticks now() const override { return whole(ticks); }
+  uint16_t serial_bytes() const override { return whole(::serial_bytes); }
   void put(uint8_t byte) override {
     while ((UCSR1A & _BV(UDRE1)) == 0) {
     }
@@ -67,6 +63,17 @@ class Avr : public Board {
     UBRR1L = kLinkDivisor;
     UCSR1B = _BV(RXEN1) | _BV(TXEN1) | _BV(RXCIE1);
   }
+
+ private:
+  // Reads what an interrupt may change between the reads of its bytes.
+  template <class Value>
+  static Value whole(const volatile Value& shared) {
+    const uint8_t status = SREG;
+    cli();
+    const Value value = shared;
+    SREG = status;
+    return value;
+  }
 };
 
 class AvrSerialPort : public SerialPort {
@@ -85,7 +92,10 @@ ISR(TIMER1_COMPA_vect) {
   ticked = true;
 }
 
-ISR(USART0_RX_vect) { serial.byte_received(UDR0); }
+ISR(USART0_RX_vect) {
+  serial.byte_received(UDR0);
+  serial_bytes = serial_bytes + 1;
+}
 
 ISR(USART0_UDRE_vect) {
   uint8_t byte;

@@ -38,14 +38,15 @@ void Bench::hello() {
 void Bench::handle(Bytes record) {
   const Bytes body = record.from(1);
   Ticks due;
-  if (started_) node_.run(board_.now(), due);
+  if (started_) node_.run(now(), due);
   switch (static_cast<ToBoard>(record[0])) {
     case ToBoard::kSetup: setup(body.data()); break;
-    case ToBoard::kRadio: node_.received(Line::kRadio, body); break;
+    case ToBoard::kRadio: hear(body); break;
     case ToBoard::kRadioSent: node_.sent(Line::kRadio, body[0] != 0); break;
     case ToBoard::kBusy: set_busy(body[0], body[1] != 0); break;
     case ToBoard::kCall: call(static_cast<CallCode>(body[0]), body.from(1)); break;
-    case ToBoard::kRestart: board_.restart();
+    case ToBoard::kRestart: board_.restart(); break;
+    case ToBoard::kTime: time_ = load_be32(body.data());
   }
   ++records_;
   reported_ = false;
@@ -59,12 +60,21 @@ void Bench::setup(const uint8_t* body) {
   setup.channels = body[4];
   // Numbers continue after a reset: a late reply must not fit the next request. (decision 117)
   setup.last_seq_num = body[7] != 0 ? board_.kept_seq_num() : load_be16(body + 5);
-  board_.start_clock();
-  setup.now = board_.now();
+  setup.members = body[8];
+  takes_time_ = body[13] != 0;
+  time_ = 0;
+  if (!takes_time_) board_.start_clock();
+  setup.now = now();
   setup.slack = 1;
   begin(FromBoard::kReady, 0);
   node_.start(setup);
+  silence_.start(load_be32(body + 9));
   started_ = true;
+}
+
+void Bench::hear(Bytes packet) {
+  node_.received(Line::kRadio, packet);
+  if (kIsSink) silence_.received(node_, Role::kSink, Line::kRadio, packet, now());
 }
 
 void Bench::set_busy(uint8_t line, bool busy) {
@@ -76,29 +86,33 @@ void Bench::set_busy(uint8_t line, bool busy) {
 void Bench::run() {
   if (!started_) return;
   Ticks due = 0;
-  if (serial_.has_news()) node_.run(board_.now(), due);
-  const uint8_t packets = serial_.poll(node_);
-  if (packets != 0) {
-    packets_ = static_cast<uint8_t>(packets_ + packets);
-    reported_ = false;
+  if (serial_.has_news()) node_.run(now(), due);
+  if (serial_.poll(node_) != 0) reported_ = false;
+  bool timer_runs = node_.run(now(), due);
+  Ticks silence_due = 0;
+  if (kIsSink && silence_.run(node_, *this, now(), silence_due)) {
+    if (!timer_runs || is_reached(silence_due, due)) due = silence_due;
+    timer_runs = true;
   }
-  const bool timer_runs = node_.run(board_.now(), due);
   board_.kept_seq_num() = node_.last_seq_num();
   report_idle(timer_runs, due);
 }
 
 void Bench::report_idle(bool timer_runs, Ticks due) {
+  // Read first: what they have brought shows in the flags.
+  const uint16_t serial_bytes = board_.serial_bytes();
   uint8_t flags = 0;
   if (timer_runs) flags |= kIdleTimerRuns;
+  if (serial_.is_sending()) flags |= kIdleSerialSends;
   // A packet that has just left may be followed by what had no room beside it.
-  if (serial_.is_sending() || serial_.has_news()) flags |= kIdleSerialSends;
+  if (serial_.has_news()) flags |= kIdleSerialHasNews;
   if (reported_ && flags == told_flags_ && due == told_due_) return;
   reported_ = true;
   told_flags_ = flags;
   told_due_ = due;
-  begin(FromBoard::kIdle, 7);
+  begin(FromBoard::kIdle, 8);
   board_.put(records_);
-  board_.put(packets_);
+  put16(serial_bytes);
   board_.put(flags);
   put32(due);
 }
@@ -122,6 +136,11 @@ void Bench::mote_joined(Address address, const Descriptor& descriptor) {
   board_.put(static_cast<uint8_t>(descriptor.mote_type));
   put16(descriptor.transducers.raw());
   board_.put(descriptor.actuators.raw());
+}
+
+void Bench::mote_left(Address address) {
+  begin(EventCode::kMoteLeft, 4);
+  put_address(address);
 }
 
 void Bench::received(Address src, uint8_t app_id, Bytes data) {

@@ -4,6 +4,7 @@
 #include "conformance/adapters/firmware/bench/records.h"
 #include "conformance/node/node.h"
 #include "conformance/node/serial_port.h"
+#include "conformance/node/silence.h"
 
 #ifndef RUBRIC_FIRMWARE_SINK
 #define RUBRIC_FIRMWARE_SINK 0  // 1: firmware of a sink.
@@ -38,6 +39,8 @@ class Board {
   /// Sends a byte to the bench; waits until there is room for it.
   virtual void put(uint8_t byte) = 0;
   virtual void start_clock() = 0;
+  /// Returns how many bytes the serial line has brought since the reset.
+  virtual uint16_t serial_bytes() const = 0;
   /// Returns memory that survives a reset, but not a loss of power.
   virtual uint16_t& kept_seq_num() = 0;
   virtual void restart() = 0;
@@ -61,6 +64,7 @@ class Bench : public Driver, public Application {
 
   void joined(Address address, bool success) override;
   void mote_joined(Address address, const Descriptor& descriptor) override;
+  void mote_left(Address address) override;
   void received(Address src, uint8_t app_id, Bytes data) override;
   void ack_received(uint8_t app_id, uint16_t seq_num, bool success) override;
   void syn_data_received(ChannelId channel, DataStatus status) override;
@@ -73,7 +77,9 @@ class Bench : public Driver, public Application {
   void begin(EventCode event, size_t argument_bytes);
   void result(bool success);
   void result(ChannelResult result);
+  Ticks now() const { return takes_time_ ? time_ : board_.now(); }
   void setup(const uint8_t* body);
+  void hear(Bytes packet);
   void set_busy(uint8_t line, bool busy);
   void call(CallCode code, Bytes arguments);
   void call_on_lines(CallCode code, Bytes arguments);
@@ -83,10 +89,12 @@ class Bench : public Driver, public Application {
   Board& board_;
   SerialPort& serial_;
   FirmwareNode node_;
+  Silence<kIsSink ? SinkSizes::kMembers : 1> silence_;
+  bool takes_time_ = false;  ///< From the bench.
+  Ticks time_ = 0;
   bool started_ = false;
   bool reported_ = true;
   uint8_t records_ = 0;
-  uint8_t packets_ = 0;
   uint8_t told_flags_ = 0;
   Ticks told_due_ = 0;
 };

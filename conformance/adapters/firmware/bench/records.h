@@ -11,12 +11,15 @@ namespace firmware {
 
 /// Tags of records from the bench to the board.
 enum class ToBoard : uint8_t {
-  kSetup = 1,  ///< id u16, island u16, channels u8, last sequence number u16, keep it u8.
+  /// id u16, island u16, channels u8, last sequence number u16, keep it u8, members u8,
+  /// gone_after u32 (ticks), the time comes from kTime u8.
+  kSetup = 1,
   kRadio,      ///< A packet (dispatch byte, AM header, payload) that the radio hears.
   kRadioSent,  ///< link ack u8: the last transmission has ended.
   kBusy,       ///< line u8 (0 radio, 1 serial, 2 application), busy u8.
   kCall,       ///< CallCode, arguments.
   kRestart,    ///< Reset the processor; unanswered but by kHello.
+  kTime,       ///< The time u32 (ticks), if it does not come from the board's clock.
 };
 
 /// Tags of records from the board to the bench.
@@ -25,11 +28,13 @@ enum class FromBoard : uint8_t {
   kReady,      ///< The clock has started.
   kRadio,      ///< link ack asked for u8, a packet for the radio.
   kEvent,      ///< EventCode, arguments.
-  kIdle,       ///< records u8 and packets u8 handled so far, Idle flags u8, next timer u32 (ticks).
+  /// Records u8 handled so far, bytes u16 from the serial line, Idle flags u8, next timer u32
+  /// (ticks).
+  kIdle,
 };
 
 /// Flags of kIdle.
-enum : uint8_t { kIdleTimerRuns = 1, kIdleSerialSends = 2 };
+enum : uint8_t { kIdleTimerRuns = 1, kIdleSerialSends = 2, kIdleSerialHasNews = 4 };
 
 constexpr size_t kRecordMax = 125;  ///< Tag and body: the longest holds a whole packet.
 
@@ -65,6 +70,7 @@ enum class EventCode : uint8_t {
   kInputValue,
   kInterfaceState,
   kClock,
+  kMoteLeft,
 };
 
 }  // namespace firmware

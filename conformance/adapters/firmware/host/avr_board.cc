@@ -136,8 +136,7 @@ void AvrBoard::power_on() {
   connect(serial_, '0');
 }
 
-void AvrBoard::restart(Instant now) {
-  avr_->cycle = std::max<Instant>(avr_->cycle, now);
+void AvrBoard::restart() {
   avr_reset(avr_);
   connect(link_, '1');
   connect(serial_, '0');
@@ -154,6 +153,8 @@ std::size_t AvrBoard::untouched_ram_bytes() const {
 }
 
 Instant AvrBoard::now() const { return avr_->cycle; }
+
+void AvrBoard::wait(Instant end) { avr_->cycle = std::max<Instant>(avr_->cycle, end); }
 
 void AvrBoard::put(Uart& uart, Bytes bytes) {
   uart.waiting.insert(uart.waiting.end(), bytes.begin(), bytes.end());

@@ -21,10 +21,12 @@ class AvrBoard : public SimulatedBoard {
   AvrBoard& operator=(const AvrBoard&) = delete;
 
   void power_on() override;
-  void restart(Instant now) override;
+  void restart() override;
   Instant now() const override;
+  bool has_clock() const override { return true; }
   void run(Instant end, Listener& listener) override;
   void stop() override { stopped_ = true; }
+  void wait(Instant end) override;
   void put_link(Bytes bytes) override;
   void put_serial(Bytes bytes) override;
   bool serial_is_idle() const override { return serial_.waiting.empty(); }

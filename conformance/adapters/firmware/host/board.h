@@ -9,7 +9,7 @@
 
 namespace rubric::firmware {
 
-/// Time since the program began, 7,372,800 to the second: a cycle of the ATmega128.
+/// Time, 7,372,800 to the second: a cycle of the ATmega128.
 using Instant = std::uint64_t;
 constexpr Instant kInstantsPerSecond = 7'372'800;
 constexpr Instant kInstantsPerTick = kInstantsPerSecond / 1024;
@@ -36,12 +36,17 @@ class SimulatedBoard {
   virtual ~SimulatedBoard() = default;
   /// Loads new firmware and clears its memory; does not run it yet.
   virtual void power_on() = 0;
-  /// Restarts it at `now`; memory is kept. A byte that it was sending may be cut off.
-  virtual void restart(Instant now) = 0;
+  /// Restarts it; memory is kept. A byte that it was sending may be cut off.
+  virtual void restart() = 0;
   virtual Instant now() const = 0;
+  /// Returns false if the firmware takes the time from the bench's records, not from a clock of
+  /// the board. Then no time passes in run(), which waits until the board says something.
+  virtual bool has_clock() const = 0;
   /// Runs until `end`, or until a listener calls stop().
   virtual void run(Instant end, Listener& listener) = 0;
   virtual void stop() = 0;
+  /// Lets time pass to `end`, while a board with a clock has no power.
+  virtual void wait(Instant end) = 0;
   /// Sends bytes to the board; they take their time on the line.
   virtual void put_link(Bytes bytes) = 0;
   virtual void put_serial(Bytes bytes) = 0;

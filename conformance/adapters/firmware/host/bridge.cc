@@ -30,7 +30,11 @@ Instant air_time(std::size_t packet_bytes) {
 
 Tick Bridge::tick_of(Instant instant) const { return (instant - zero_) / kInstantsPerTick; }
 
-Tick Bridge::tick() const { return tick_of(off_ ? off_now_ : board_.now()); }
+Instant Bridge::last_instant_of(Tick tick) const {
+  return zero_ + (tick + 1) * kInstantsPerTick - 1;
+}
+
+Tick Bridge::tick() const { return tick_of(board_.now()); }
 
 Firmware Bridge::greet() {
   board_.power_on();
@@ -40,7 +44,8 @@ Firmware Bridge::greet() {
   held_.clear();
   chip_ = Chip();
   reported_ = Reported();
-  sent_records_ = sent_packets_ = 0;
+  sent_records_ = 0;
+  sent_serial_bytes_ = 0;
   deframer_ = HdlcDeframer(content_);
   const Instant end = board_.now() + kBootMax;
   while (!greeted_ && board_.now() < end) board_.run(end, *this);
@@ -60,12 +65,15 @@ void Bridge::start(const NodeSetup& setup) {
 }
 
 void Bridge::setup(bool keep_seq_num) {
-  ByteVector body(8);
+  ByteVector body(14);
   store_be16(body.data(), setup_.id);
   store_be16(body.data() + 2, setup_.island);
   body[4] = setup_.channels;
   store_be16(body.data() + 5, setup_.last_seq_num);
   body[7] = keep_seq_num ? 1 : 0;
+  body[8] = setup_.members;
+  store_be32(body.data() + 9, setup_.gone_after);
+  body[13] = board_.has_clock() ? 0 : 1;
   record(ToBoard::kSetup, Bytes(body.data(), body.size()));
 }
 
@@ -97,7 +105,9 @@ void Bridge::hear_serial(Bytes packet) {
   if (!size) return;  // Longer than a frame may be.
   board_.put_serial(Bytes(frame.data(), *size));
   fed_serial_ = board_.now();
-  ++sent_packets_;
+  sent_serial_bytes_ = static_cast<std::uint16_t>(sent_serial_bytes_ + *size);
+  // Without time that its bytes take, it is there before whatever comes next.
+  if (!board_.has_clock()) settle();
 }
 
 void Bridge::call(Bytes call_record) {
@@ -127,7 +137,7 @@ void Bridge::busy(std::uint8_t line, bool busy) {
 }
 
 void Bridge::power_off() {
-  off_now_ = off_ ? off_now_ : board_.now();
+  if (!off_ && !board_.has_clock()) settle();
   off_ = true;
   ready_ = greeted_ = in_flight_ = false;
   chip_.has_frame = false;
@@ -139,10 +149,11 @@ void Bridge::power_off() {
 void Bridge::reboot() {
   power_off();
   off_ = false;
-  board_.restart(off_now_);
+  board_.restart();
   incoming_.clear();
   reported_ = Reported();
-  sent_records_ = sent_packets_ = 0;
+  sent_records_ = 0;
+  sent_serial_bytes_ = 0;
   setup(true);
   if (chip_.channel_busy) busy(0, true);
   if (serial_busy_) busy(1, true);
@@ -151,35 +162,73 @@ void Bridge::reboot() {
 // Runs, and also stops when a line comes.
 void Bridge::run_until(Instant end) {
   const bool transmission_ends = chip_.has_frame && chip_.on_air && !chip_.wants_ack;
-  board_.run(transmission_ends ? std::min(end, chip_.end) : end, *this);
+  if (transmission_ends) end = std::min(end, chip_.end);
+  if (board_.has_clock()) {
+    board_.run(end, *this);
+  } else {
+    turn_clock(end);
+  }
   if (transmission_ends && chip_.has_frame && board_.now() >= chip_.end) end_transmission(true);
+}
+
+// Passes the time to `end`, or to what comes before it: a line, or the node's next timer.
+void Bridge::turn_clock(Instant end) {
+  const std::size_t lines = lines_.size();
+  settle();
+  if (lines_.size() > lines) return;
+  if ((reported_.flags & kIdleTimerRuns) != 0) {
+    end = std::min(end, clock_zero_ + reported_.due * kInstantsPerTick);
+  }
+  board_.wait(end);
+  tell_time();
+  settle();
+}
+
+// Waits until the board has done all that there is to do at this time.
+void Bridge::settle() {
+  while (true) {
+    while (in_flight_ || !queue_.empty()) board_.run(board_.now(), *this);
+    const bool sends = (reported_.flags & kIdleSerialSends) != 0 && !serial_busy_;
+    const bool has_news = (reported_.flags & kIdleSerialHasNews) != 0;
+    if (has_all_bytes() && !sends && !has_news) return;
+    tell_time();  // It answers with its news.
+  }
+}
+
+void Bridge::tell_time() {
+  const Instant passed = std::max(board_.now(), clock_zero_) - clock_zero_;
+  std::uint8_t body[4];
+  store_be32(body, static_cast<std::uint32_t>(passed / kInstantsPerTick));
+  record(ToBoard::kTime, body);
 }
 
 void Bridge::advance(Tick now) {
   const Instant end = zero_ + now * kInstantsPerTick;
   last_tick_ = std::max(last_tick_, now);
-  if (off_) off_now_ = std::max(off_now_, end);
+  if (off_) board_.wait(end);
   while (!off_ && board_.now() < end) run_until(end);
 }
 
 Tick Bridge::run(Tick end) {
-  const Instant until = zero_ + (end + 1) * kInstantsPerTick;
+  const Instant until = last_instant_of(end);
   if (off_) {
-    off_now_ = std::max(off_now_, until);
+    board_.wait(until);
     return end;
   }
+  if (!board_.has_clock()) settle();  // Perhaps there is no time left in this tick.
   while (lines_.empty() && board_.now() < until) run_until(until);
   // The instruction that brought the line may have ended in the next tick.
   const Tick reached = lines_.empty() ? end : std::min(end, last_tick_);
-  const Instant behind = zero_ + (reached + 1) * kInstantsPerTick;
+  const Instant behind = last_instant_of(reached);
   while (board_.now() < behind) run_until(behind);  // All of that tick.
   last_tick_ = std::max(last_tick_, reached);
   return last_tick_;
 }
 
 bool Bridge::serial_is_quiet() const {
-  if ((reported_.flags & kIdleSerialSends) != 0 || !board_.serial_is_idle()) return false;
-  return reported_.packets == sent_packets_ || board_.now() > fed_serial_ + kSerialPatience;
+  if ((reported_.flags & (kIdleSerialSends | kIdleSerialHasNews)) != 0) return false;
+  if (!board_.serial_is_idle()) return false;
+  return has_all_bytes() || board_.now() > fed_serial_ + kSerialPatience;
 }
 
 std::optional<Tick> Bridge::next() const {
@@ -245,7 +294,7 @@ void Bridge::handle(Bytes record) {
       return send_next();
     case FromBoard::kReady:
       ready_ = true;
-      clock_zero_ = board_.now();
+      clock_zero_ = board_.now() + (board_.has_clock() ? 0 : kNodeIsLate);
       return board_.stop();
     case FromBoard::kRadio:
       chip_.packet.assign(body.begin() + 1, body.end());
@@ -256,7 +305,7 @@ void Bridge::handle(Bytes record) {
       return;
     case FromBoard::kEvent: return emit("up " + event_text(body));
     case FromBoard::kIdle:
-      reported_ = {body[0], body[1], body[2], load_be32(body.data() + 3)};
+      reported_ = {body[0], load_be16(body.data() + 1), body[3], load_be32(body.data() + 4)};
       if (reported_.records == sent_records_) in_flight_ = false;
       return send_next();
   }

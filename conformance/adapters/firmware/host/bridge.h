@@ -30,6 +30,8 @@ struct NodeSetup {
   std::uint16_t island = 0;
   std::uint8_t channels = 4;
   std::uint16_t last_seq_num = 0;
+  std::uint8_t members = 0xFF;   ///< Of a sink, if there is room.
+  std::uint32_t gone_after = 0;  ///< Ticks of silence after which a mote has left; 0: never.
 };
 
 class Bridge final : private Listener {
@@ -74,7 +76,7 @@ class Bridge final : private Listener {
   };
   struct Reported {  // From the last kIdle.
     std::uint8_t records = 0;
-    std::uint8_t packets = 0;
+    std::uint16_t serial_bytes = 0;
     std::uint8_t flags = 0;
     std::uint32_t due = 0;
   };
@@ -87,11 +89,16 @@ class Bridge final : private Listener {
   void record(ToBoard tag, Bytes body);
   void send_next();
   void run_until(Instant end);
+  void turn_clock(Instant end);
+  void settle();
+  void tell_time();
   void emit(std::string line);
   void transmit();
   void end_transmission(bool acked);
+  bool has_all_bytes() const { return reported_.serial_bytes == sent_serial_bytes_; }
   bool serial_is_quiet() const;
   Tick tick_of(Instant instant) const;
+  Instant last_instant_of(Tick tick) const;
 
   SimulatedBoard& board_;
   NodeSetup setup_;
@@ -101,13 +108,12 @@ class Bridge final : private Listener {
   bool off_ = false;
   Instant zero_ = 0;        ///< Time of tick 0.
   Instant clock_zero_ = 0;  ///< Start of the node's own clock.
-  Instant off_now_ = 0;     ///< The time while it is off.
   Tick last_tick_ = 0;      ///< Lines are not earlier.
   ByteVector incoming_;     ///< A record that is not complete.
   std::deque<ByteVector> queue_;
   bool in_flight_ = false;  ///< A record that is not answered yet.
   std::uint8_t sent_records_ = 0;
-  std::uint8_t sent_packets_ = 0;
+  std::uint16_t sent_serial_bytes_ = 0;
   std::uint8_t serial_seq_ = 14;  ///< TinyOS's host begins so.
   Instant fed_serial_ = 0;        ///< Time of the last packet for the line.
   Reported reported_;

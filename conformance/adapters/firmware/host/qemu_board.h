@@ -1,50 +1,35 @@
-// An LM3S6965 in qemu-system-arm, whose UARTs are TCP connections. Its time is real.
+// An LM3S6965 in qemu-system-arm, whose UARTs are sockets.
 #pragma once
 
 #include <sys/types.h>
 
 #include <chrono>
 #include <cstdint>
-#include <functional>
 #include <string>
 
 #include "conformance/adapters/firmware/host/board.h"
 
 namespace rubric::firmware {
 
-/// A port of 127.0.0.1 at which connections are awaited.
-class LoopbackPort {
- public:
-  /// Throws BoardBroken if there is none.
-  LoopbackPort();
-  ~LoopbackPort();
-  LoopbackPort(const LoopbackPort&) = delete;
-  LoopbackPort& operator=(const LoopbackPort&) = delete;
-
-  std::uint16_t port() const { return port_; }
-  /// Returns the next connection, which the caller closes; -1 if none came within `wait`.
-  int accept(std::chrono::milliseconds wait) const;
-  /// Does the same, but calls `is_hopeless` often and ends at once when it returns true.
-  int accept(std::chrono::milliseconds wait, const std::function<bool()>& is_hopeless) const;
-
- private:
-  int listener_ = -1;
-  std::uint16_t port_ = 0;
-};
-
 class QemuBoard : public SimulatedBoard {
  public:
+  /// kBoard: the processor's own, in real time, so that its load is seen, and that of the machine.
+  /// kBench: time passes only as the bench says, so that each run is the same.
+  enum class Clock { kBoard, kBench };
+
   /// `qemu` is the emulator, by name or path.
-  QemuBoard(std::string qemu, std::string elf_file);
+  QemuBoard(std::string qemu, std::string elf_file, Clock clock);
   ~QemuBoard() override;
   QemuBoard(const QemuBoard&) = delete;
   QemuBoard& operator=(const QemuBoard&) = delete;
 
   void power_on() override;
-  void restart(Instant now) override;
+  void restart() override;
   Instant now() const override;
+  bool has_clock() const override { return clock_ == Clock::kBoard; }
   void run(Instant end, Listener& listener) override;
   void stop() override { stopped_ = true; }
+  void wait(Instant end) override;
   void put_link(Bytes bytes) override { put(link_, bytes); }
   void put_serial(Bytes bytes) override;
   bool serial_is_idle() const override { return true; }  // Its UART is not held up by bits.
@@ -55,11 +40,13 @@ class QemuBoard : public SimulatedBoard {
   void put(int descriptor, Bytes bytes);
   template <class Take>
   void read_some(int descriptor, Take take);
-  int connected(const LoopbackPort& port);
+  void hear(std::chrono::nanoseconds longest, Listener& listener);
   void end_emulator();
 
   std::string qemu_;
   std::string elf_file_;
+  Clock clock_;
+  Instant bench_now_ = 0;
   Steady::time_point begin_ = Steady::now();
   pid_t emulator_ = -1;
   int link_ = -1;

@@ -2,6 +2,8 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <termios.h>
@@ -76,17 +78,32 @@ class Terminal : public Device {
 // One connection at a time. Bytes without a receiver are lost, as on a line.
 class TcpLine : public Device {
  public:
-  TcpLine() = default;
-  ~TcpLine() override { hang_up(); }
+  TcpLine() {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof address;
+    auto* const any = reinterpret_cast<sockaddr*>(&address);
+    listener_ = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+    if (listener_ < 0 || bind(listener_, any, size) != 0 || listen(listener_, 1) != 0 ||
+        getsockname(listener_, any, &size) != 0) {
+      throw BoardBroken(std::strerror(errno));
+    }
+    port_ = ntohs(address.sin_port);
+  }
+  ~TcpLine() override {
+    hang_up();
+    close(listener_);
+  }
   TcpLine(const TcpLine&) = delete;
   TcpLine& operator=(const TcpLine&) = delete;
 
-  std::string name() const override { return fmt::format("tcp:127.0.0.1:{}", port_.port()); }
+  std::string name() const override { return fmt::format("tcp:127.0.0.1:{}", port_); }
   void put(std::uint8_t byte) override {
     if (user_ >= 0) send(user_, &byte, 1, MSG_NOSIGNAL | MSG_DONTWAIT);
   }
   std::size_t take(std::uint8_t* bytes, std::size_t max) override {
-    if (user_ < 0) user_ = port_.accept(std::chrono::milliseconds(0));
+    if (user_ < 0) accept_user();
     if (user_ < 0 || !has_bytes(user_)) return 0;
     const ssize_t size = recv(user_, bytes, max, 0);
     if (size <= 0) hang_up();
@@ -94,12 +111,18 @@ class TcpLine : public Device {
   }
 
  private:
+  void accept_user() {
+    user_ = accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC);
+    const int at_once = 1;  // Bytes of a line do not wait for more.
+    if (user_ >= 0) setsockopt(user_, IPPROTO_TCP, TCP_NODELAY, &at_once, sizeof at_once);
+  }
   void hang_up() {
     if (user_ >= 0) close(user_);
     user_ = -1;
   }
 
-  LoopbackPort port_;
+  int listener_ = -1;
+  std::uint16_t port_ = 0;
   int user_ = -1;
 };
 

@@ -6,6 +6,8 @@
 #include <iostream>
 #include <map>
 
+#include "conformance/node/sizes.h"
+
 namespace rubric::firmware {
 namespace {
 
@@ -15,7 +17,7 @@ class Unsupported : public std::runtime_error {
 };
 
 // The parameters that `reset` may set.
-constexpr std::string_view kSettings = " id island channels seed profile ";
+constexpr std::string_view kSettings = " id island channels seed profile members gone_after ";
 constexpr std::uint32_t kFirstSeqNum = 1000;
 constexpr std::uint32_t kSeqNumsPerSeed = 257;
 
@@ -79,6 +81,9 @@ class Session {
     setup.island = static_cast<std::uint16_t>(number("island", 0, 0xFFFF));
     setup.channels = static_cast<std::uint8_t>(channels);
     setup.last_seq_num = static_cast<std::uint16_t>(kFirstSeqNum + kSeqNumsPerSeed * seed - 1);
+    setup.members = static_cast<std::uint8_t>(
+        number("members", node::SinkSizes::kMembers, node::SinkSizes::kMembers));
+    setup.gone_after = number("gone_after", 0, 0xFFFFFFFF);
     bridge.greet();
     bridge.start(setup);
     bridge_ = &bridge;

@@ -54,6 +54,7 @@ constexpr std::array kEvents{
     word(EventCode::kInputValue, "input_value", "fb"),
     word(EventCode::kInterfaceState, "interface_state", "bb"),
     word(EventCode::kClock, "clock", "l"),
+    word(EventCode::kMoteLeft, "mote_left", "a"),
 };
 
 // A record has no room for more data, and a node refuses as much already.
