@@ -20,6 +20,7 @@ using std::chrono::steady_clock;
 constexpr Milliseconds kGreetEvery{500};
 constexpr std::size_t kPeersMax = 256;
 constexpr std::size_t kDatagramMax = 65'535;
+constexpr std::size_t kArrivedMax = 64;  // A flood is not sorted for ever.
 
 Descriptor udp_socket(const SocketAddress& address) {
   Descriptor made(::socket(address.family(), SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
@@ -35,6 +36,7 @@ bool same_end(const SocketAddress& a, const SocketAddress& b) {
 
 void Air::open() {
   peers_.clear();
+  arrived_.clear();
   room_.resize(kDatagramMax);
   const std::vector<SocketAddress> all = resolve(at_.host, at_.port, true);
   // The same address for everybody, so that all meet: of localhost that of IPv4.
@@ -106,27 +108,44 @@ std::int64_t air_time_ns(std::int64_t stamp_ns) {
   return stamp_ns > now_ns - kTrustNs && stamp_ns < now_ns + kTrustNs ? stamp_ns : now_ns;
 }
 
-Bytes Air::receive(SteadyTime deadline, const Others& others) {
-  while (true) {
+// Puts the datagrams at hand into order. Returns the error with which the socket had no more.
+int Air::take_arrived() {
+  while (arrived_.size() < kArrivedMax) {
     SocketAddress from;
     from.size_bytes = sizeof from.storage;
     const auto size =
         ::recvfrom(socket_.get(), room_.data(), room_.size(), 0, from.get(), &from.size_bytes);
-    if (size >= 0) {
-      const Bytes datagram(room_.data(), static_cast<std::size_t>(size));
-      if (is_hub_) note(from);
-      const Result<ZepPacket> zep = parse_zep(datagram);
-      if (zep && zep->type == ZepPacket::Type::kAck) continue;  // A greeting.
+    if (size < 0) return errno;
+    const Bytes datagram(room_.data(), static_cast<std::size_t>(size));
+    if (is_hub_) note(from);
+    const Result<ZepPacket> zep = parse_zep(datagram);
+    if (size == 0 || (zep && zep->type == ZepPacket::Type::kAck)) continue;  // A greeting.
+    const std::int64_t time_ns = air_time_ns(zep ? zep->time_ns : kNoTime);
+    const auto later = std::upper_bound(
+        arrived_.begin(), arrived_.end(), time_ns,
+        [](std::int64_t time, const Arrived& other) { return time < other.time_ns; });
+    arrived_.insert(later, {time_ns, from, {datagram.begin(), datagram.end()}});
+  }
+  return 0;
+}
+
+Bytes Air::receive(SteadyTime deadline, const Others& others) {
+  while (true) {
+    const int error = take_arrived();
+    if (!arrived_.empty()) {
+      current_ = std::move(arrived_.front().bytes);
+      const SocketAddress from = arrived_.front().from;
+      arrived_.pop_front();
+      const Bytes datagram(current_.data(), current_.size());
       if (is_hub_) relay(datagram, &from);
-      if (size > 0) return datagram;
-      continue;
+      return datagram;
     }
-    if (errno == ECONNREFUSED) {
+    if (error == ECONNREFUSED) {
       open();
       continue;
     }
-    if (errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR) {
-      throw Broken(std::strerror(errno));
+    if (error != EAGAIN && error != EWOULDBLOCK && error != EINTR) {
+      throw Broken(std::strerror(error));
     }
     const SteadyTime now = steady_clock::now();
     if (now >= next_greeting_) greet();

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <deque>
 #include <vector>
 
 #include "codec/lines/address.h"
@@ -29,7 +30,8 @@ class Air {
   /// Descriptors of a caller who waits for more than datagrams; -1: none.
   using Others = std::array<int, 2>;
   /// Returns the next datagram, valid until the next call; nothing if the time is over first or
-  /// one of `others` can be read. Throws Broken.
+  /// one of `others` can be read. Of those at hand it is the one that was sent first by its stamp:
+  /// on a busy host a sender may be late, and so may this process. Throws Broken.
   Bytes receive(SteadyTime deadline, const Others& others = {-1, -1});
 
  private:
@@ -37,7 +39,13 @@ class Air {
     SocketAddress address;
     SteadyTime heard;
   };
+  struct Arrived {
+    std::int64_t time_ns;
+    SocketAddress from;
+    std::vector<std::uint8_t> bytes;
+  };
   void greet();
+  int take_arrived();
   void relay(Bytes datagram, const SocketAddress* from);
   void note(const SocketAddress& from);
 
@@ -47,6 +55,8 @@ class Air {
   std::vector<Peer> peers_;  // Of a hub.
   SteadyTime next_greeting_;
   std::vector<std::uint8_t> room_;
+  std::deque<Arrived> arrived_;  // By time.
+  std::vector<std::uint8_t> current_;
 };
 
 /// Returns when a frame that comes now was sent, in nanoseconds since 1970: by the sender's stamp
