@@ -104,6 +104,11 @@ void QemuBoard::power_on() {
   close(serial);
   close(link);
   if (emulator_ < 0) throw BoardBroken(std::strerror(errno));
+  // The board's time begins when it says something: how long an emulator starts is the host's.
+  pollfd waited{link_, POLLIN, 0};
+  if (poll(&waited, 1, static_cast<int>(kAnswerTime.count())) <= 0) {
+    throw BoardBroken(fmt::format("{} says nothing", qemu_));
+  }
 }
 
 // Memory is kept, so the emulator runs on and the firmware resets its processor.
