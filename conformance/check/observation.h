@@ -51,7 +51,15 @@ struct Tap {
   std::string name;
   machine::Link link = machine::Link::kRadio;
   bool has_direction = false;  ///< The capture says which way a frame went.
+  bool numbered = false;       ///< Some packets ask for confirmation, as hosts' do (directions.h).
+  std::int32_t contradicted = 0;  ///< Frames that contradict its directions, less those that agree.
+
+  /// Returns whether the way of each frame is plain.
+  bool shows_direction() const { return has_direction || numbered; }
 };
+
+/// In place of an island that is not known: no island has this number (decision 132).
+constexpr std::uint16_t kNoIsland = machine::kNullDevid;
 
 /// A node as the user describes it (`--node 2=mote`, `--sink 1=11`).
 struct KnownNode {

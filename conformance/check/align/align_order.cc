@@ -57,7 +57,7 @@ std::vector<Anchor> longest_in_order(const std::vector<Anchor>& all) {
 // what it got from it.
 bool may_be_either(const Run& run, const Observation& seen) {
   Net net;
-  return seen.kind == Observation::Kind::kSerial && !run.taps[seen.tap].has_direction &&
+  return seen.kind == Observation::Kind::kSerial && !run.taps[seen.tap].shows_direction() &&
          seen.frame.type == am::kNet && parse_net(seen.frame.payload, net) &&
          net.src.devid != machine::kNullDevid && net.dest.pid != net.src.pid;
 }
@@ -212,8 +212,8 @@ std::optional<std::vector<std::uint32_t>> wrong_ways(const Run& run, std::uint32
   for (std::uint32_t i = 0; i < run.seen.size(); ++i) {
     const Observation& seen = run.seen[i];
     if (seen.place.file != file || seen.kind != Observation::Kind::kSerial) continue;
-    if (run.taps[seen.tap].has_direction) continue;
-    if (const std::int32_t id = set_island_id(seen.frame); id > 0) {
+    if (run.taps[seen.tap].shows_direction()) continue;
+    if (const std::int32_t id = set_island_id(seen.frame); id >= 0) {
       islands.insert(static_cast<std::uint16_t>(id));
     }
     Net net;

@@ -8,6 +8,7 @@
 
 #include "conformance/check/align/align_logs.h"
 #include "conformance/check/align/steps.h"
+#include "conformance/check/input/directions.h"
 #include "conformance/check/input/read_packet.h"
 #include "conformance/check/input/read_trace.h"
 #include "conformance/check/message.h"
@@ -86,6 +87,11 @@ void observe(const Packet& packet, std::string_view interface_name, ReadSource& 
   } else if (seen.kind == Observation::Kind::kLinkAck && packet.framing == Framing::kHdlc) {
     seen.to_mote = packet.direction == Direction::kInbound;
   }
+  Tap& tap = run.taps[seen.tap];
+  const bool stated = packet.direction != Direction::kUnknown;
+  if (tap.link == machine::Link::kSerial && seen.kind != Observation::Kind::kDamaged) {
+    count_direction(seen, stated, tap);
+  }
   run.seen.push_back(seen);
 }
 
@@ -145,6 +151,7 @@ Run in_one_order(Run run, const AlignOptions& options, std::optional<std::int64_
   if (!std::is_sorted(run.seen.begin(), run.seen.end(), by_file)) {  // Files that grew at a time.
     std::stable_sort(run.seen.begin(), run.seen.end(), by_file);
   }
+  find_directions(run);
   mend_steps(run);
   const bool own_zero = begin_logs(run);
   align(run, options, own_zero);
@@ -338,13 +345,6 @@ void merge(Run& run) {
                                  [](const Observation& seen) { return seen.place.timed(); });
   run.end_us = last == run.seen.rend() ? run.start_us : last->place.time_us;
   run.end_us = std::max(run.end_us, run.watched_until_us);
-}
-
-bool looks_towards_sink(const machine::Frame& frame) {
-  if (frame.type == am::kConfig) return true;
-  Net net;
-  return frame.type == am::kNet && parse_net(frame.payload, net) &&
-         net.src.devid == machine::kNullDevid && net.dest.devid != machine::kNullDevid;
 }
 
 }  // namespace rubric::check

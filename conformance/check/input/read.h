@@ -61,8 +61,4 @@ std::optional<Run> read(const std::vector<std::string>& files, std::string& erro
 /// time come after those with one, make has_time false, and do not change the run's end.
 void merge(Run& run);
 
-/// Returns whether a frame on a serial line goes to the sink, if the capture does not say: a sink's
-/// frames have AM source 0 and destination 0xFFFF just as a host's may, so the message decides.
-bool looks_towards_sink(const machine::Frame& frame);
-
 }  // namespace rubric::check

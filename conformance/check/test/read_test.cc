@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <fstream>
+#include <initializer_list>
 #include <iterator>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "codec/runtime/hdlc.h"
 #include "conformance/check/identify/identity.h"
 #include "conformance/check/judge/judge.h"
 #include "conformance/check/message.h"
@@ -170,6 +173,76 @@ case log
     early = true;
   }
   EXPECT_TRUE(early);
+}
+
+// A line of which a sniffer wrote the flags, or none.
+class SerialCapture {
+ public:
+  explicit SerialCapture(std::optional<bool> flags_of_mote) : flags_of_mote_(flags_of_mote) {
+    file_ = reader_.open("line");
+  }
+  /// Adds a packet of the mote, or of the host.
+  void add(bool of_mote, std::int32_t kind, std::initializer_list<int> payload, int type = 28) {
+    std::vector<std::uint8_t> bytes{0, 0xFF, 0xFF, 0, 0, 0, 0, static_cast<std::uint8_t>(type)};
+    for (const int byte : payload) bytes.push_back(static_cast<std::uint8_t>(byte));
+    bytes[5] = static_cast<std::uint8_t>(payload.size());
+    if (kind == kSerialAck) bytes.clear();
+    Packet packet;
+    packet.framing = Framing::kHdlc;
+    packet.bytes = Bytes(bytes.data(), bytes.size());
+    packet.kind = kind;
+    if (serial_kind_has_seq(kind)) packet.serial_seq = 7;
+    packet.time_ns = 1'000'000 * ++count_;
+    if (flags_of_mote_) {
+      packet.direction = of_mote == *flags_of_mote_ ? Direction::kOutbound : Direction::kInbound;
+    }
+    reader_.take(file_, packet, "serial:1");
+  }
+  /// Returns the ways of all: "d" to the mote, "u" from it.
+  std::string ways() {
+    run_ = reader_.finish();
+    std::string out;
+    for (const Observation& seen : run_.seen) out += seen.to_mote ? "d" : "u";
+    return out;
+  }
+  const check::Run& run() const { return run_; }
+
+ private:
+  std::optional<bool> flags_of_mote_;
+  RunReader reader_;
+  check::Run run_;
+  std::uint32_t file_ = 0;
+  std::int64_t count_ = 0;
+};
+
+// A host sends a message, and the mote hands it back.
+void add_echo(SerialCapture& line) {
+  const std::initializer_list<int> message = {0, 12, 0, 2, 0, 11, 255, 253, 0, 0, 5, 2, 3, 5};
+  line.add(false, kSerialPacketAck, message);
+  line.add(true, kSerialAck, {});
+  line.add(true, kSerialPacketNoAck, message);
+}
+
+TEST(Read, ThePacketsKindShowsItsWay) {
+  SerialCapture line({});
+  add_echo(line);
+  EXPECT_EQ(line.ways(), "duu");
+  SerialCapture unnumbered({});  // Then the message decides.
+  unnumbered.add(false, kSerialPacketNoAck, {0, 12, 0, 2, 0, 11, 255, 253, 0, 0, 5, 2, 3, 5});
+  unnumbered.add(true, kSerialPacketNoAck, {0, 11, 255, 253, 0, 11, 0, 2, 0, 0, 5, 2, 3, 5});
+  EXPECT_EQ(unnumbered.ways(), "du");
+}
+
+TEST(Read, FlagsOfTheCapturingHostAreTurned) {
+  for (const bool of_mote : {true, false}) {
+    SerialCapture line(of_mote);
+    add_echo(line);
+    EXPECT_EQ(line.ways(), "duu") << of_mote;
+    EXPECT_EQ(line.run().facts.size(), of_mote ? 0U : 1U);
+  }
+  SerialCapture sink_only(false);
+  sink_only.add(true, kSerialPacketNoAck, {0, 11, 255, 253, 0, 11, 0, 2, 0, 0, 5, 2, 3, 5});
+  EXPECT_EQ(sink_only.ways(), "u");
 }
 
 }  // namespace
