@@ -87,8 +87,8 @@ class Forwarding {
   struct Line {
     std::uint16_t sink = kNobody;
     std::uint16_t am = 0;
-    std::uint16_t island = 0;
-    std::uint16_t last_island = 0;  ///< Before SET_ISLAND_ID.
+    std::uint16_t island = kNoIsland;
+    std::uint16_t last_island = kNoIsland;  ///< Before SET_ISLAND_ID.
     std::int64_t island_changed_us = -1'000'000'000;
     std::int64_t slack_us = 0;  ///< For so long it may act for either island.
     bool island_sure = true;    ///< That change surely arrived.

@@ -1,4 +1,5 @@
-// What a sink has heard and owes on each of its lines; forward.cc judges what it sends.
+// What a sink has heard and owes on each of its lines; forward.cc and forward_up.cc judge what it
+// sends.
 #include <algorithm>
 
 #include "conformance/check/judge/forward.h"
