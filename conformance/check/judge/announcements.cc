@@ -83,8 +83,7 @@ void Announcements::announce(SinkWatch& sink, const Place& at, machine::Address 
     next_.push_back(next);
   }
   if (watch.report_due && !notice) {
-    watch.report_due = false;
-    --sink.debts;
+    sink.set_due(watch, false);
     context_.left(sink.device, machine::Link::kSerial, at, watch.ack_whole_us,
                   context_.handled_us(sink.device, watch.ack_whole_us, at.time_us),
                   "serial_joined of mote " + number(address.devid));
@@ -207,8 +206,7 @@ void Announcements::serial_set(std::uint16_t sink_device, bool on, std::int64_t 
   sink->serial_off = !on;
   if (on) sink->serial_on_us = now_us;
   if (on || context_.device(sink_device).whole) return;  // Reports wait until it is on again.
-  for (auto& [am, watch] : sink->motes) watch.report_due = false;
-  sink->debts = 0;
+  for (auto& [am, watch] : sink->motes) sink->set_due(watch, false);
 }
 
 void Announcements::overdue(std::uint16_t sink_device, std::int64_t now_us) {
@@ -237,8 +235,7 @@ void Announcements::overdue_reports(SinkWatch& sink, std::int64_t end_us) {
     // Its list may be full of members from before the capture, unless it has taken a later one.
     const bool room = context_.options.start_cold || sink.reported_us > watch.ack.time_us;
     if (!room && !end) continue;
-    watch.report_due = false;
-    --sink.debts;
+    sink.set_due(watch, false);
     const auto owes = [](const SinkHypothesis& h) { return !h.unknown && h.owes_report; };
     if (!std::all_of(watch.set.begin(), watch.set.end(), owes)) continue;
     // With a full list, even of members from before the capture, nothing is owed.

@@ -119,9 +119,8 @@ void SinkJoins::set_island(std::uint16_t sink, std::uint16_t island, const Place
   for (auto& [am, pair] : watch->motes) {
     pair.cut_off = surely_lists(pair);
     pair.set.assign(1, unknown);
-    pair.report_due = false;
+    watch->set_due(pair, false);
   }
-  watch->debts = 0;
   watch->reported_us = -1;
 }
 
@@ -171,7 +170,7 @@ void SinkJoins::may_have_replied(const Observation& seen, const Reply& reply) {
     const Device& device = context_.device(sink.device);
     if (device.am != seen.frame.src || sink.island != reply.island || device.hearing) continue;
     PairWatch& mote = pair(sink, seen.frame.dest);
-    if (mote.report_due) --sink.debts;
+    sink.set_due(mote, false);
     mote.know_nothing();
   }
 }
@@ -180,8 +179,7 @@ void SinkJoins::forgot(std::uint16_t sink, std::uint16_t mote_am) {
   SinkWatch* const watch = find(sink);
   if (watch == nullptr) return;
   PairWatch& mote = pair(*watch, mote_am);
-  if (mote.report_due) --watch->debts;
-  mote.report_due = false;
+  watch->set_due(mote, false);
   next_.clear();
   for (SinkHypothesis h : mote.set) {
     h.unknown = h.owes_report = h.owes_notice = false;
@@ -534,10 +532,7 @@ void SinkJoins::ack_join(std::uint16_t, const Observation& seen, const AckJoin& 
     watch.ack_whole_us = seen.place.time_us + air_us(seen);
     watch.ignored_ack = admitted ? ReqId::kNone : ignored;
     const bool waits = sink.serial_off && !device.whole;
-    if (sure && all_admit && !watch.report_due && device.shows_line() && !waits) {
-      watch.report_due = true;
-      ++sink.debts;
-    }
+    if (sure && all_admit && device.shows_line() && !waits) sink.set_due(watch, true);
     keep(sink, watch, next_, seen.place);
   }
 }

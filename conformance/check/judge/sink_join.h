@@ -122,6 +122,13 @@ struct SinkWatch {
   std::int64_t serial_us = -1;    ///< Its last frame on its serial line.
   bool behind = false;            ///< That one had to wait for the one before.
   std::int64_t reported_us = -1;  ///< The latest ack_join that it reported.
+
+  /// Notes that the report of this mote, one of `motes`, is due, or no longer.
+  void set_due(PairWatch& mote, bool due) {
+    if (mote.report_due == due) return;
+    mote.report_due = due;
+    debts = due ? debts + 1 : debts - 1;
+  }
 };
 
 class SinkJoins {
