@@ -65,7 +65,7 @@ constexpr std::uint16_t kNoIsland = machine::kNullDevid;
 struct KnownNode {
   std::uint16_t id = 0;
   machine::Role role = machine::Role::kMote;
-  std::uint16_t island = 0;  ///< For a sink; 0: unknown.
+  std::uint16_t island = kNoIsland;  ///< For a sink.
 };
 
 struct Options {
@@ -96,7 +96,7 @@ struct LoggedNode {
   std::uint32_t file = 0;  ///< Of the log.
   machine::Role role = machine::Role::kMote;
   std::uint16_t id = 0;
-  std::uint16_t island = 0;    ///< 0: not said.
+  std::uint16_t island = kNoIsland;
   bool under_test = true;      ///< If a log marks some nodes as under test, the others are not.
   bool application = false;    ///< The log has its application's calls and events.
   bool hearing = false;        ///< The log has what its radio was given; a base station's lines.

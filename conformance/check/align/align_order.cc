@@ -62,13 +62,12 @@ bool may_be_either(const Run& run, const Observation& seen) {
          net.src.devid != machine::kNullDevid && net.dest.pid != net.src.pid;
 }
 
-// Returns the line's island that this message shows, whichever way it went; 0 if it shows none.
+// Returns the line's island that this message shows, whichever way it went; kNoIsland if none.
 std::uint16_t island_shown(const Observation& seen, const Net& net) {
   SerialJoined joined;
   if (!seen.to_mote && parse_serial_joined(net, joined)) return joined.address.pid;
   if (net.src.devid == machine::kNullDevid) return net.src.pid;
-  return net.dest == machine::Address{net.src.pid, machine::kNullDevid} ? net.src.pid
-                                                                        : std::uint16_t{0};
+  return net.dest == machine::Address{net.src.pid, machine::kNullDevid} ? net.src.pid : kNoIsland;
 }
 
 class Ordering {
@@ -218,7 +217,8 @@ std::optional<std::vector<std::uint32_t>> wrong_ways(const Run& run, std::uint32
     }
     Net net;
     if (seen.frame.type != am::kNet || !parse_net(seen.frame.payload, net)) continue;
-    if (const std::uint16_t island = island_shown(seen, net); island != 0) islands.insert(island);
+    if (const std::uint16_t island = island_shown(seen, net); island != kNoIsland)
+      islands.insert(island);
     if (may_be_either(run, seen)) open.push_back(i);
     const bool within = net.src.devid != machine::kNullDevid &&
                         net.dest.devid != machine::kNullDevid && net.dest.pid == net.src.pid;

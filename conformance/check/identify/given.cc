@@ -28,20 +28,20 @@ std::optional<Role> Given::role(std::uint16_t am) const {
 }
 
 std::uint16_t Given::only_island(std::uint16_t am) const {
-  std::uint16_t island = 0;
+  std::uint16_t island = kNoIsland;
   for (const KnownNode& node : nodes_) {
-    if (node.id != am || node.island == 0) continue;
-    if (island != 0) return 0;
+    if (node.id != am || node.island == kNoIsland) continue;
+    if (island != kNoIsland) return kNoIsland;
     island = node.island;
   }
   return island;
 }
 
 std::uint16_t Given::only_island() const {
-  std::uint16_t island = 0;
+  std::uint16_t island = kNoIsland;
   for (const KnownNode& node : nodes_) {
     if (node.role != Role::kSink) continue;
-    if (island != 0 || node.island == 0) return 0;
+    if (island != kNoIsland || node.island == kNoIsland) return kNoIsland;
     island = node.island;
   }
   return island;
@@ -49,7 +49,8 @@ std::uint16_t Given::only_island() const {
 
 bool Given::names(std::uint16_t am, std::uint16_t island) const {
   return std::any_of(nodes_.begin(), nodes_.end(), [&](const KnownNode& node) {
-    return node.id == am && (island == 0 || node.island == 0 || node.island == island);
+    return node.id == am &&
+           (island == kNoIsland || node.island == kNoIsland || node.island == island);
   });
 }
 
@@ -75,7 +76,7 @@ Contradiction role_contradiction(std::uint16_t am, Role role, Role shown, std::u
 }
 
 void GivenRoles::look(const machine::Frame& frame, std::uint32_t index) {
-  if (given_.empty() || !given_.names(frame.src, 0)) return;
+  if (given_.empty() || !given_.names(frame.src, kNoIsland)) return;
   Joins& joins = joins_[frame.src];
   const bool asks = frame.type == am::kJoin || frame.type == am::kAckJoin;
   if (asks && joins.as_mote == 0) joins.as_mote = index + 1;
@@ -110,7 +111,7 @@ std::vector<Contradiction> island_contradictions(const Run& run, const Given& gi
                                                  const std::vector<Shown>& shown) {
   std::vector<Contradiction> out;
   for (const KnownNode& node : given.nodes()) {
-    if (node.island == 0) continue;
+    if (node.island == kNoIsland) continue;
     const auto is_it = [&](const Shown& s) { return s.am == node.id && s.island == node.island; };
     if (std::any_of(shown.begin(), shown.end(), is_it)) continue;
     const auto other = std::find_if(shown.begin(), shown.end(), [&](const Shown& s) {

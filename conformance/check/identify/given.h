@@ -20,12 +20,13 @@ class Given {
   const std::vector<KnownNode>& nodes() const { return nodes_; }
   /// Returns the role of the node with this AM address.
   std::optional<machine::Role> role(std::uint16_t am) const;
-  /// Returns the one island that is given for sinks with this address; 0 for none or several.
+  /// Returns the one island that is given for sinks with this address; kNoIsland for none or
+  /// several.
   std::uint16_t only_island(std::uint16_t am) const;
-  /// Returns the one island that is given for any sink; 0 for none or several.
+  /// Returns the one island that is given for any sink; kNoIsland for none or several.
   std::uint16_t only_island() const;
-  /// Returns whether a node of this address is given that may be in that island; 0 means any
-  /// island.
+  /// Returns whether a node of this address is given that may be in that island; kNoIsland
+  /// means any.
   bool names(std::uint16_t am, std::uint16_t island) const;
   /// Returns the AM address of sinks, if one is given.
   std::optional<std::uint16_t> sink_am() const;
@@ -72,7 +73,7 @@ class GivenRoles {
 /// A frame that shows a sink's island.
 struct Shown {
   std::uint16_t am = 0;
-  std::uint16_t island = 0;
+  std::uint16_t island = kNoIsland;
   std::uint32_t index = 0;
 };
 

@@ -229,7 +229,7 @@ class Identifier {
       Device device;
       device.am = stream.am;
       device.role = role_of(stream);
-      device.island = stream.sink ? stream.first_island : std::uint16_t{0};
+      device.island = stream.sink ? stream.first_island : kNoIsland;
       device.judged = may_be_judged(stream.am);
       device.known = !is_tester(stream.am) &&
                      (named || ((before == kNobody || another) && !answers_nothing(stream)));
@@ -267,7 +267,7 @@ class Identifier {
       const Role said = given_.role(logged.id).value_or(logged.role);
       if (said != logged.role) {
         out_.contradictions.push_back(role_contradiction(logged.id, said, logged.role, index));
-      } else if (logged.role == Role::kSink && logged.island != 0) {
+      } else if (logged.role == Role::kSink && logged.island != kNoIsland) {
         shown.push_back({logged.id, logged.island, index});
       }
     }
@@ -315,8 +315,8 @@ class Identifier {
       const Device& device = out_.devices[i];
       if (!device.known || device.am != stream.am || device.role == Role::kBaseStation) continue;
       if (device.role != role_of(stream)) continue;
-      const bool same_island = device.island == stream.first_island || device.island == 0 ||
-                               stream.first_island == 0 ||
+      const bool same_island = device.island == stream.first_island || device.island == kNoIsland ||
+                               stream.first_island == kNoIsland ||
                                last_island(device) == stream.first_island;
       if (stream.sink && !same_island) continue;
       if (follows(stream, static_cast<std::uint16_t>(i))) return static_cast<std::uint16_t>(i);
@@ -348,12 +348,12 @@ class Identifier {
       if (run_.taps[tap].link != machine::Link::kSerial) continue;
       SerialLine line = lines_.at(tap);
       const auto host = logged_host_.find(tap);
-      if (host != logged_host_.end() && run_.nodes[host->second].island != 0) {
+      if (host != logged_host_.end() && run_.nodes[host->second].island != kNoIsland) {
         line.first = run_.nodes[host->second].island;  // Whatever it sets later.
-        if (line.island == 0) line.island = line.first;
+        if (line.island == kNoIsland) line.island = line.first;
       }
       const auto owner = logged_sink_.find(tap);
-      if (line.island == 0 && owner == logged_sink_.end()) continue;
+      if (line.island == kNoIsland && owner == logged_sink_.end()) continue;
       std::uint16_t sink = owner == logged_sink_.end() ? sink_of(line) : owner->second;
       if (sink == kNobody) {
         Device device;
@@ -368,11 +368,12 @@ class Identifier {
       const bool logs = owner != logged_sink_.end();
       // Perhaps it was heard by radio only after its base station had set its island.
       Device& its_sink = out_.devices[sink];
-      if (!logs && line.first != 0 && its_sink.island == line.island) its_sink.island = line.first;
-      const std::uint16_t said = logs ? out_.devices[sink].island : std::uint16_t{0};
+      if (!logs && line.first != kNoIsland && its_sink.island == line.island)
+        its_sink.island = line.first;
+      const std::uint16_t said = logs ? out_.devices[sink].island : kNoIsland;
       out_.devices[sink].taps.push_back(tap);
       out_.sink_of_tap[tap] = sink;
-      const std::uint16_t its = said != 0 ? said : line.first;
+      const std::uint16_t its = said != kNoIsland ? said : line.first;
       if (out_.devices[sink].partner == kNobody) add_base_station(sink, its);
     }
   }
@@ -395,7 +396,7 @@ class Identifier {
     for (std::size_t i = 0; i < out_.devices.size(); ++i) {
       Device& device = out_.devices[i];
       if (device.role != Role::kBaseStation || device.partner != kNobody) continue;
-      if (device.island != island && device.island != 0) continue;
+      if (device.island != island && device.island != kNoIsland) continue;
       device.partner = sink;
       out_.devices[sink].partner = static_cast<std::uint16_t>(i);
       return;

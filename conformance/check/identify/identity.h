@@ -69,8 +69,8 @@ constexpr std::uint16_t kNobody = 0xFFFF;
 struct Device {
   std::uint16_t am = 0;
   machine::Role role = machine::Role::kMote;
-  std::uint16_t island = 0;  ///< A sink's or base station's first; 0: unknown.
-  bool known = true;         ///< False: an unknown sender; what it does is a stimulus.
+  std::uint16_t island = kNoIsland;  ///< A sink's or base station's first.
+  bool known = true;                 ///< False: an unknown sender; what it does is a stimulus.
   bool judged = true;        ///< False: the user or a log says that it is no node under test.
   bool application = false;  ///< A log has its application's calls and events.
   bool hearing = false;      ///< A log has all that its radio was given.

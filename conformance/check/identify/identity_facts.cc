@@ -26,9 +26,10 @@ void name_devices(const Run& run, Identity& out) {
     } else if (device.role == Role::kMote) {
       device.name = "mote " + id;
     } else if (device.role == Role::kSink) {
-      device.name = device.island == 0 ? "sink " + id : "sink of island " + island;
+      device.name = device.island == kNoIsland ? "sink " + id : "sink of island " + island;
     } else {
-      device.name = "base station of island " + island;
+      device.name = "base station";
+      if (device.island != kNoIsland) device.name += " of island " + island;
     }
     std::string fact = device.name + ":";
     if (device.radio) fact += " " + counted(device.frames, "frame") + " on the air,";

@@ -8,16 +8,18 @@ namespace {
 constexpr std::int64_t kSerialRepeatUs = 1'500'000;  // TinyOS hosts wait 1000 ms.
 constexpr std::size_t kShownMax = 256;
 
-// Returns the island that serial_joined or the source of a passing message shows, never its
-// destination alone; 0 if neither does. A base station hands on what other islands' PCs sent.
-std::uint16_t island_of(const Observation& seen, const Net& net, std::uint16_t sink_am) {
-  SerialJoined joined;
-  if (!seen.to_mote && parse_serial_joined(net, joined)) return joined.address.pid;
+// Returns the island that a report or the source of a passing message shows, never its destination
+// alone; kNoIsland if neither does. A base station hands on what other islands' PCs sent. Of a
+// report that names two islands the one counts that the air shows, else that of its source.
+std::uint16_t island_of(const Observation& seen, const Net& net, const Streams& streams) {
   const bool own = seen.to_mote
                        ? net.src == machine::Address{net.dest.pid, machine::kNullDevid}
-                       : net.src.devid == sink_am ||
+                       : net.src.devid == streams.sink_am() ||
                              net.dest == machine::Address{net.src.pid, machine::kNullDevid};
-  return own ? net.src.pid : std::uint16_t{0};
+  SerialJoined joined;
+  const bool report = !seen.to_mote && parse_serial_joined(net, joined);
+  if (report && (!own || streams.has_sink(joined.address.pid))) return joined.address.pid;
+  return own ? net.src.pid : kNoIsland;
 }
 
 }  // namespace
@@ -31,7 +33,7 @@ SerialLines::SerialLines(const Run& run, const Given& given, Streams& streams)
     if (only != nullptr) return;
     only = &lines_[tap];
   }
-  if (only == nullptr || given.only_island() == 0) return;
+  if (only == nullptr || given.only_island() == kNoIsland) return;
   only->given = true;
   only->island = only->first = given.only_island();
 }
@@ -49,14 +51,14 @@ void SerialLines::look(std::uint32_t index) {
     // It had its given island before, if it was there before.
     if (line.given && (line.used || streams_.has_sink())) show(line.island);
     streams_.rename_island(line.island, island);
-    if (line.first == 0) line.first = island;
+    if (line.first == kNoIsland) line.first = island;
     show(island);
     return;
   }
   Net net;
   if (seen.frame.type != am::kNet || !parse_net(seen.frame.payload, net)) return;
-  if (line.island == 0 || line.given) {
-    if (const std::uint16_t island = island_of(seen, net, streams_.sink_am()); island != 0) {
+  if (line.island == kNoIsland || line.given) {
+    if (const std::uint16_t island = island_of(seen, net, streams_); island != kNoIsland) {
       line.first = island;
       show(island);
     }

@@ -10,8 +10,8 @@
 namespace rubric::check {
 
 struct SerialLine {
-  std::uint16_t island = 0;  ///< Now; 0: not known.
-  std::uint16_t first = 0;
+  std::uint16_t island = kNoIsland;  ///< Now.
+  std::uint16_t first = kNoIsland;
   bool given = false;           ///< By the user; no frame has shown it so far.
   bool used = false;            ///< Some net_msg came.
   std::uint32_t last_down = 0;  ///< The last packet to the sink that asked for confirmation, + 1.

@@ -66,10 +66,10 @@ IslandHint Streams::hint_of(const machine::Frame& frame) const {
       if (net.src.devid == machine::kNullDevid) hint.src = net.src.pid;
       hint.dest = net.dest.pid;
     }
-    if (net.dest.pid == machine::kBroadcastPid) hint.src = hint.dest = 0;  // Any sink's.
+    if (net.dest.pid == machine::kBroadcastPid) hint.src = hint.dest = kNoIsland;  // Any sink's.
     for (const Down& down : downs_) {
       if (down.addresses != net.addresses() || down.seq_num != net.seq_num) continue;
-      hint.line = hint.line == 0 || hint.line == down.island ? down.island : kBothLines;
+      hint.line = hint.line == kNoIsland || hint.line == down.island ? down.island : kBothLines;
     }
   }
   return hint;
@@ -79,22 +79,22 @@ int Streams::score(const Stream& stream, const Observation& seen, const IslandHi
   const auto ahead = static_cast<std::uint8_t>(seen.dsn - stream.dsn);
   if (ahead == 0 || ahead > kGapMax) return kNoMatch;
   int points = ahead == 1 ? kNextDsn : kNearDsn;
-  if (stream.island == 0) return points;
+  if (stream.island == kNoIsland) return points;
   // Motes of two islands may have the same id; but one mote may also change its island.
   if (!stream.sink) {
-    if (hint.mote == 0) return points;
+    if (hint.mote == kNoIsland) return points;
     points += hint.mote == stream.island ? kMoteIsland : -kMoteIsland;
     return points > 0 ? points : kNoMatch;
   }
-  const bool stale = hint.strong != 0 && hint.strong == stream.last_island;
-  const bool other = hint.strong != 0 && hint.strong != stream.island && !stale;
+  const bool stale = hint.strong != kNoIsland && hint.strong == stream.last_island;
+  const bool other = hint.strong != kNoIsland && hint.strong != stream.island && !stale;
   if (other) return stream.given ? points : kNoMatch;  // Rather than two sinks, one given wrongly.
-  if (hint.strong != 0 && !stale) points += kStrongIsland;
+  if (hint.strong != kNoIsland && !stale) points += kStrongIsland;
   // A message from another island's base station to that island is the other sink's.
-  if (hint.src != 0 && hint.src == hint.dest && hint.src != stream.island) return kNoMatch;
+  if (hint.src != kNoIsland && hint.src == hint.dest && hint.src != stream.island) return kNoMatch;
   if (hint.src == stream.island) points += kSrcIsland;
   if (hint.dest == stream.island) points += kDestIsland;
-  if (hint.line == stream.island && hint.line != 0) points += kStrongIsland;
+  if (hint.line == stream.island && hint.line != kNoIsland) points += kStrongIsland;
   return points;
 }
 
@@ -129,10 +129,11 @@ std::uint16_t Streams::assign(std::uint32_t index, bool& repeat) {
   if (even) return kNobody;
   // With several sinks a frame that shows no island belongs to none for certain: a DSN alone does
   // not decide.
-  const bool told = hint.strong != 0 || hint.src != 0 || hint.dest != 0 || hint.mote != 0 ||
-                    (hint.line != 0 && hint.line != kBothLines);
-  if (candidates > 1 && (!told || (streams_[best].sink && hint.strong == 0 && hint.src == 0 &&
-                                   hint.dest == 0 && hint.line == 0))) {
+  const bool told = hint.strong != kNoIsland || hint.src != kNoIsland || hint.dest != kNoIsland ||
+                    hint.mote != kNoIsland || (hint.line != kNoIsland && hint.line != kBothLines);
+  if (candidates > 1 &&
+      (!told || (streams_[best].sink && hint.strong == kNoIsland && hint.src == kNoIsland &&
+                 hint.dest == kNoIsland && hint.line == kNoIsland))) {
     return kNobody;
   }
   if (best == kLast) return open(index, hint);
@@ -154,7 +155,7 @@ void Streams::go_on(Stream& stream, std::uint32_t index, const IslandHint& hint)
   stream.last = index;
   stream.last_us = seen.place.time_us;
   if (seen.frame.type == am::kJoin) stream.asked = true;
-  if (!stream.sink && hint.mote != 0) stream.island = hint.mote;
+  if (!stream.sink && hint.mote != kNoIsland) stream.island = hint.mote;
   if (seen.frame.type == am::kJoinReply && !stream.asked) stream.sink = true;
   if (stream.sink) guess_island(stream, index, hint);
 }
@@ -177,19 +178,19 @@ std::uint16_t Streams::assign_past(std::uint32_t index, const IslandHint& hint) 
 // Sets the stream's island. A frame's plain statement ranks above the user's, and that above a
 // frame's suggestion.
 void Streams::guess_island(Stream& stream, std::uint32_t index, const IslandHint& hint) const {
-  if (hint.strong != 0 && hint.strong != stream.last_island && stream.plain == 0) {
+  if (hint.strong != kNoIsland && hint.strong != stream.last_island && stream.plain == 0) {
     stream.plain = index + 1;
     stream.plain_island = hint.strong;
-    if (stream.given) stream.island = 0;
+    if (stream.given) stream.island = kNoIsland;
     stream.given = false;
   }
-  if (stream.island != 0) return;
+  if (stream.island != kNoIsland) return;
   const std::uint16_t said = given_.only_island(stream.am);
   const bool taken = std::any_of(streams_.begin(), streams_.end(), [&](const Stream& other) {
     return other.am == stream.am && other.island == said;
   });
-  stream.given = hint.strong == 0 && said != 0 && !taken;
-  stream.island = hint.strong != 0 ? hint.strong : stream.given ? said : hint.dest;
+  stream.given = hint.strong == kNoIsland && said != kNoIsland && !taken;
+  stream.island = hint.strong != kNoIsland ? hint.strong : stream.given ? said : hint.dest;
   stream.first_island = stream.island;
 }
 
@@ -226,12 +227,18 @@ bool Streams::has_sink() const {
   return std::any_of(streams_.begin(), streams_.end(), [](const Stream& s) { return s.sink; });
 }
 
+bool Streams::has_sink(std::uint16_t island) const {
+  return std::any_of(streams_.begin(), streams_.end(),
+                     [&](const Stream& s) { return s.sink && s.island == island; });
+}
+
 void Streams::heard_on_serial(const Net& net, std::uint16_t island) {
-  if (island != 0) downs_[down_next_++ % downs_.size()] = {net.addresses(), net.seq_num, island};
+  if (island != kNoIsland)
+    downs_[down_next_++ % downs_.size()] = {net.addresses(), net.seq_num, island};
 }
 
 void Streams::rename_island(std::uint16_t from, std::uint16_t to) {
-  if (from == 0) return;
+  if (from == kNoIsland) return;
   for (Stream& stream : streams_) {
     if (!stream.sink || stream.island != from || from == to) continue;
     stream.last_island = from;

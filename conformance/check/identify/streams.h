@@ -13,26 +13,26 @@ namespace rubric::check {
 
 /// A frame's hints about its sender's island, and their weight.
 struct IslandHint {
-  std::uint16_t strong = 0;  ///< A reply's island, or the pid of the sink's own address.
-  std::uint16_t src = 0;     ///< pid of a message from a base station.
-  std::uint16_t dest = 0;    ///< Destination of a message that is passed on.
-  std::uint16_t mote = 0;    ///< Were it a mote's: its island.
-  std::uint16_t line = 0;    ///< The serial line down which the same message came lately.
+  std::uint16_t strong = kNoIsland;  ///< A reply's island, or the pid of the sink's own address.
+  std::uint16_t src = kNoIsland;     ///< pid of a message from a base station.
+  std::uint16_t dest = kNoIsland;    ///< Destination of a message that is passed on.
+  std::uint16_t mote = kNoIsland;    ///< Were it a mote's: its island.
+  std::uint16_t line = kNoIsland;    ///< The serial line down which the same message came lately.
 };
 
 struct Stream {
   std::uint16_t am = 0;
   std::uint8_t dsn = 0;  ///< In the last frame.
   bool sink = false;
-  bool joins = false;              ///< Its first frame was a join_request.
-  bool asked = false;              ///< It sent a join_request.
-  bool given = false;              ///< Its island is what the user says, so far.
-  std::uint32_t plain = 0;         ///< The first observation that shows its island, + 1; 0: none.
-  std::uint16_t plain_island = 0;  ///< There.
-  std::uint16_t island = 0;        ///< Now; may change by SET_ISLAND_ID.
-  std::uint16_t first_island = 0;
-  std::uint16_t last_island = 0;  ///< Before SET_ISLAND_ID.
-  std::uint32_t first = 0;        ///< Observations.
+  bool joins = false;       ///< Its first frame was a join_request.
+  bool asked = false;       ///< It sent a join_request.
+  bool given = false;       ///< Its island is what the user says, so far.
+  std::uint32_t plain = 0;  ///< The first observation that shows its island, + 1; 0: none.
+  std::uint16_t plain_island = kNoIsland;  ///< There.
+  std::uint16_t island = kNoIsland;        ///< Now; may change by SET_ISLAND_ID.
+  std::uint16_t first_island = kNoIsland;
+  std::uint16_t last_island = kNoIsland;  ///< Before SET_ISLAND_ID.
+  std::uint32_t first = 0;                ///< Observations.
   std::uint32_t last = 0;
   std::int64_t first_us = 0;
   std::int64_t last_us = 0;
@@ -78,7 +78,7 @@ class Streams {
   struct Down {
     std::uint64_t addresses = 0;
     std::uint16_t seq_num = 0;
-    std::uint16_t island = 0;
+    std::uint16_t island = kNoIsland;
   };
   std::array<Down, 16> downs_{};
   std::size_t down_next_ = 0;

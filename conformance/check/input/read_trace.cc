@@ -41,7 +41,7 @@ class LogReader {
       node.file = static_cast<std::uint32_t>(run_.files.size() - 1);
       node.role = role_of(header.role);
       node.id = header.id.value_or(0);
-      node.island = header.island.value_or(0);
+      node.island = header.island.value_or(kNoIsland);
       node.under_test = !marked || header.iut;
       if (const std::int64_t* const said = find(header.stated, trace::ParameterId::kChannels)) {
         node.channels = static_cast<std::uint8_t>(*said);

@@ -15,8 +15,9 @@ void Announcements::report(std::uint16_t sink_device, const Observation& seen, c
                            const SerialJoined& joined) {
   SinkWatch* const sink = joins_.find(sink_device);
   if (sink == nullptr) return;
-  if (sink->island == 0) sink->island = joined.address.pid;
+  if (sink->island == kNoIsland) sink->island = joined.address.pid;
   const machine::Address to{joined.address.pid, machine::kNullDevid};
+  machine::Address member = joined.address;
   if (net.src != joined.address || net.dest != to || net.reliable != 0) {
     context_.report(
         "J6-CONTENT"_rule, Severity::kFail, seen.place, sink_device,

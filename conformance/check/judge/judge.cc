@@ -263,7 +263,8 @@ void Judge::called(const Observation& seen, std::uint16_t device) {
   if (const auto* send = std::get_if<machine::Send>(seen.call)) {
     const bool off = interfaces_.switched_off(device, machine::Link::kRadio) ||
                      interfaces_.switched_off(device, machine::Link::kSerial);
-    return originals_.called(device, seen, *send, off ? machine::Address{} : address_of(device));
+    return originals_.called(device, seen, *send,
+                             off ? machine::Address{kNoIsland, 0} : address_of(device));
   }
   const machine::Call& call = *seen.call;
   const bool other = std::holds_alternative<machine::GetInterface>(call) ||
@@ -282,7 +283,8 @@ void Judge::called(const Observation& seen, std::uint16_t device) {
   if (other) return;  // The rest is for the channels.
   const Device& d = who_.devices[device];
   const machine::Address sinks_own{sinks_.island(device), d.am};
-  const machine::Address motes_own = motes_.address(device).value_or(machine::Address{0, d.am});
+  const machine::Address motes_own =
+      motes_.address(device).value_or(machine::Address{kNoIsland, d.am});
   synaptic_.called(device, seen, d.role == Role::kSink ? sinks_own : motes_own);
 }
 
@@ -321,10 +323,11 @@ void Judge::told(const Observation& seen, std::uint16_t device) {
   }
 }
 
-// Returns a node's own address; the island is 0 if it has none, or that is not known.
+// Returns a node's own address; the island is kNoIsland if it has none, or that is not known.
 machine::Address Judge::address_of(std::uint16_t node) const {
   const Device& device = who_.devices[node];
-  if (device.role == Role::kMote) return motes_.address(node).value_or(machine::Address{});
+  if (device.role == Role::kMote)
+    return motes_.address(node).value_or(machine::Address{kNoIsland, 0});
   if (device.role == Role::kSink) return {sinks_.island(node), device.am};
   if (const auto own = own_island_.find(node); own != own_island_.end()) {
     return {own->second, machine::kNullDevid};
@@ -424,7 +427,7 @@ void Judge::own_message(std::uint16_t node, const Observation& seen, const Net& 
 // Returns whether it is one.
 bool Judge::forged(std::uint16_t node, const Observation& seen, const Net& net, machine::Link link,
                    machine::Address own) {
-  if (own.pid == 0 || net.src == own || !originals_.asked(node, net)) return false;
+  if (own.pid == kNoIsland || net.src == own || !originals_.asked(node, net)) return false;
   if (originals_.has_moved(node)) return false;  // Nobody knows its island.
   context_.report("N1-SRC"_rule, Severity::kFail, seen.place, node,
                   {"The message to " + text_of(net.dest) + " that its application asked for has " +

@@ -78,7 +78,7 @@ bool Judge::no_room(std::uint16_t node, const Net& net) const {
 //= N8-DELIVER: A base station delivers a message with dest <its island, NULL> to its application.
 void Judge::hears(std::uint16_t node, const machine::Router& router, machine::Link from,
                   const Observation& seen, std::uint16_t sender, const Net& net, bool sure) {
-  if (router.own.pid == 0) return;  // A sink of which no island is known.
+  if (router.own.pid == kNoIsland) return;  // A sink of which no island is known.
   const machine::Route route = machine::route_received(router, from, net.dest, net.src);
   // A message to every island may be taken or ignored (decision 114).
   const bool free = route.deliver || net.dest.pid == machine::kBroadcastPid;

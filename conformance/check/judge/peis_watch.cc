@@ -39,7 +39,7 @@ PeisWatch::Message* PeisWatch::match(Messages& messages, const Net& net) {
 
 void PeisWatch::came_up(std::uint16_t base, std::uint16_t island, const Observation& seen,
                         const Net& net, bool surely) {
-  if (!logs_peis(context_.run, base) || island == 0) return;
+  if (!logs_peis(context_.run, base) || island == kNoIsland) return;
   const machine::Route route =
       machine::route_received(base_station({island, machine::kNullDevid}, context_.sink_am),
                               Link::kSerial, net.dest, net.src);

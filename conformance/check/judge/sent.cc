@@ -45,9 +45,9 @@ void Originals::called(std::uint16_t node, const Observation& seen, const machin
   const Device& device = context_.device(node);
   const bool here = call.dest.pid == machine::kLocalPid || call.dest.pid == own.pid;
   // What goes to every island, or to the node itself, may stay (decisions 114, 131).
-  const bool self = own.pid != 0 && here &&
+  const bool self = own.pid != kNoIsland && here &&
                     (call.dest.devid == own.devid || call.dest.devid == machine::kLocalDevid);
-  const bool free = own.pid == 0 || call.dest.pid == machine::kBroadcastPid || self;
+  const bool free = own.pid == kNoIsland || call.dest.pid == machine::kBroadcastPid || self;
   const bool base = device.role == Role::kBaseStation;
   const std::uint16_t sink = base ? device.partner : node;
   const bool line = device.whole || (sink != kNobody && context_.device(sink).shows_line());

@@ -42,14 +42,14 @@ std::uint16_t SinkJoins::island(std::uint16_t sink) const {
   for (const SinkWatch& watch : sinks_) {
     if (watch.device == sink) return watch.island;
   }
-  return 0;
+  return kNoIsland;
 }
 
 bool SinkJoins::is_own(std::uint16_t sink, machine::Address address, std::int64_t now_us) const {
   if (address.devid != context_.device(sink).am) return false;
   const auto its = [&](const SinkWatch& watch) {
     // If the first island seen of a sink is one that it is told, nobody knows which it had before.
-    const bool may = watch.former_island == 0 || address.pid == watch.former_island;
+    const bool may = watch.former_island == kNoIsland || address.pid == watch.former_island;
     const bool former =
         watch.island_set && may && now_us <= context_.due_us(sink, watch.island_set_us);
     return watch.device == sink && (address.pid == watch.island || former);
@@ -83,7 +83,7 @@ void SinkJoins::begin_life(std::uint16_t sink, std::int64_t since_us) {
   const Device& device = context_.device(sink);
   if (!device.hearing) return;  // A capture does not show with which island it begins.
   watch->island = device.island;
-  watch->former_island = 0;
+  watch->former_island = kNoIsland;
   watch->ignored = -1;
   watch->island_set = false;
 }
@@ -126,7 +126,7 @@ void SinkJoins::set_island(std::uint16_t sink, std::uint16_t island, const Place
 
 bool SinkJoins::keeps_former(SinkWatch& sink, std::uint16_t shown, const Place& at,
                              std::int64_t cause_us) {
-  if (sink.former_island == 0 || shown != sink.former_island) return false;
+  if (sink.former_island == kNoIsland || shown != sink.former_island) return false;
   if (cause_us >= 0 && cause_us < sink.island_set_us &&
       at.time_us <= context_.due_us(sink.device, sink.island_set_us)) {
     return true;
@@ -141,7 +141,7 @@ bool SinkJoins::keeps_former(SinkWatch& sink, std::uint16_t shown, const Place& 
                                  : "; nothing proves that it heard that."),
                    "Island " + number(sink.island) + ", if it was told.",
                    {}});
-  sink.island = std::exchange(sink.former_island, 0);
+  sink.island = std::exchange(sink.former_island, kNoIsland);
   sink.island_sure = true;
   return true;
 }
@@ -313,7 +313,7 @@ void SinkJoins::reply(std::uint16_t sink_device, const Observation& seen, const 
     }
   }
   judge_clock(*sink, seen, reply);
-  if (sink->island == 0 && !machine::is_reserved(reply.island)) sink->island = reply.island;
+  if (sink->island == kNoIsland && !machine::is_reserved(reply.island)) sink->island = reply.island;
   if (machine::is_reserved(reply.island)) {
     context_.report("N9-OTHER"_rule, Severity::kFail, seen.place, sink_device,
                     {"join_reply offers island " + number(reply.island) + ", which is reserved.",

@@ -104,10 +104,10 @@ struct PairWatch {
 
 struct SinkWatch {
   std::uint16_t device = kNobody;
-  std::uint16_t island = 0;
+  std::uint16_t island = kNoIsland;
   bool island_set = false;  ///< SET_ISLAND_ID was seen.
   bool island_sure = true;  ///< It surely arrived, if so.
-  std::uint16_t former_island = 0;
+  std::uint16_t former_island = kNoIsland;
   std::int32_t ignored = -1;  ///< The value of the last config message that changes nothing.
   std::int64_t island_set_us = 0;
   std::unordered_map<std::uint16_t, PairWatch> motes;  ///< By AM address.
@@ -163,7 +163,7 @@ class SinkJoins {
   /// one is its island again, which is reported as inconclusive.
   bool keeps_former(SinkWatch& sink, std::uint16_t shown, const Place& at, std::int64_t cause_us);
 
-  /// Returns the sink's island now; 0 if unknown.
+  /// Returns the sink's island now; kNoIsland if unknown.
   std::uint16_t island(std::uint16_t sink) const;
   /// Returns whether `address` is the sink's, or was until so short a time ago that a message from
   /// before SET_ISLAND_ID may have waited.

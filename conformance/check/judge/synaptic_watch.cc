@@ -40,7 +40,7 @@ void SynapticWatch::begin(std::uint16_t device) {
 
 // Returns whether a channel is from the node to itself; one of a namesake in another island is not.
 bool SynapticWatch::is_local(const Node& node, const machine::Channel& channel) {
-  const bool here = node.own.pid == 0 || channel.peer.pid == node.own.pid ||
+  const bool here = node.own.pid == kNoIsland || channel.peer.pid == node.own.pid ||
                     channel.peer.pid == machine::kLocalPid;
   return channel.id >> 16 == (channel.id & 0xFFFF) && here;
 }

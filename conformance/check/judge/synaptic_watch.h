@@ -98,7 +98,7 @@ class SynapticWatch {
     std::int64_t data_us = -1;                ///< The last data of any channel.
     std::int64_t tick_us = -1;                ///< When those of their tick began to leave.
     bool logged = false;                      ///< Its log has the calls that create channels.
-    machine::Address own;                     ///< As known at the last call.
+    machine::Address own{kNoIsland, 0};       ///< As known at the last call.
     std::int64_t settled_us = -1;             ///< What was owed until then is judged.
     std::int64_t member_us = -1;              ///< A mote: joined since; a sink always is.
     std::int64_t on_us = 0;                   ///< Its radio is on since; -1: it is off.

@@ -88,9 +88,10 @@ std::string net_label(const trace::Message& message) {
 std::string short_name(const check::Device& device) {
   if (!device.known) return fmt::format("unknown {}", device.am);
   if (device.role == Role::kMote) return fmt::format("mote {}", device.am);
-  if (device.role == Role::kBaseStation) return fmt::format("base {}", device.island);
-  return device.island == 0 ? fmt::format("sink #{}", device.am)
-                            : fmt::format("sink {}", device.island);
+  const bool known = device.island != check::kNoIsland;
+  if (device.role == Role::kBaseStation)
+    return known ? fmt::format("base {}", device.island) : "base";
+  return known ? fmt::format("sink {}", device.island) : fmt::format("sink #{}", device.am);
 }
 
 std::string address_text(std::uint16_t am) {
@@ -101,12 +102,12 @@ std::string address_text(std::uint16_t am) {
 
 Scene::Scene(const check::Run& run, const check::Options& options)
     : run_(run), who_(check::identify(run, options)) {
-  std::uint16_t first_island = 0;
+  std::uint16_t first_island = check::kNoIsland;
   for (const check::Device& device : who_.devices) {
     names_.push_back(short_name(device));
     if (device.role == Role::kSink) sinks_.insert(device.am);
-    const bool motes = device.role == Role::kMote || device.island == 0;
-    if (!motes && (first_island == 0 || device.island < first_island)) first_island = device.island;
+    const bool motes = device.role == Role::kMote || device.island == check::kNoIsland;
+    if (!motes && device.island < first_island) first_island = device.island;
   }
   // Columns from left to right: base station and sink of one island; further sinks before their
   // base stations.
@@ -136,7 +137,7 @@ void Scene::add_radio_receivers(std::size_t i, std::vector<std::uint16_t>& out) 
   const machine::Frame& frame = run_.seen[i].frame;
   check::Net net;
   check::AckJoin ack;
-  std::uint16_t island = 0;  // Island of the sink, if the message shows it.
+  std::uint16_t island = check::kNoIsland;  // Of the sink, if the message shows it.
   if (frame.type == check::am::kNet && check::parse_net(frame.payload, net)) {
     island = net.dest.pid;
   }
@@ -150,7 +151,7 @@ void Scene::add_radio_receivers(std::size_t i, std::vector<std::uint16_t>& out) 
     return !exactly || device.role == Role::kMote || device.island == island;
   };
   for (const auto& [exactly, known] : {std::pair{true, true}, {false, true}, {false, false}}) {
-    if (exactly && island == 0) continue;
+    if (exactly && island == check::kNoIsland) continue;
     for (std::size_t d = 0; d < who_.devices.size(); ++d) {
       const auto node = static_cast<std::uint16_t>(d);
       if (node != sender(i) && matches(who_.devices[d], exactly, known)) out.push_back(node);

@@ -72,7 +72,7 @@ TEST(Given, ANamedMotesLostFramesMakeNoStrangers) {
   const auto unknown = std::string("unknown sender with address 2");
   const auto before = names_of(script.run, {});
   EXPECT_NE(std::find(before.begin(), before.end(), unknown), before.end());
-  const auto named = names_of(script.run, with({{2, Role::kMote, 0}}));
+  const auto named = names_of(script.run, with({{2, Role::kMote}}));
   EXPECT_EQ(std::find(named.begin(), named.end(), unknown), named.end());
   EXPECT_EQ(std::count(named.begin(), named.end(), "mote 2"), 1);
 }
@@ -101,7 +101,7 @@ TEST(Given, ARightOneChangesNoVerdict) {
   for (const char* name : {"c_two_islands", "b_reliable", "a_join_data", "f_synaptic"}) {
     const check::Run run = capture(name);
     const Report before = judge(run, {});
-    const Report report = judge(run, with({{1, Role::kSink, 11}, {2, Role::kMote, 0}}));
+    const Report report = judge(run, with({{1, Role::kSink, 11}, {2, Role::kMote}}));
     EXPECT_EQ(report.findings.size(), before.findings.size()) << name;
     EXPECT_EQ(report.verdict, before.verdict) << name;
     EXPECT_EQ(report.facts, before.facts) << name;
@@ -145,7 +145,7 @@ TEST(Given, AWrongRoleIsSaidOnceAndTheRunBelieved) {
     const char* name;
     ReqId rule;
   } kRows[] = {
-      {{1, Role::kMote, 0}, "sink of island 11", "J10-MOTE"_rule},
+      {{1, Role::kMote}, "sink of island 11", "J10-MOTE"_rule},
       {{2, Role::kSink, 0}, "mote 2", "J10-SINK"_rule},
       {{2, Role::kBaseStation, 0}, "mote 2", ReqId::kNone},
   };
@@ -168,7 +168,7 @@ TEST(Given, AMoteThatAlsoActsAsASinkFails) {
   Payload reply;
   for (const std::uint32_t word : {11U, 3U, 0U, 0U, 7U}) put16(reply, word);
   script.radio(910, 2, 3, am::kJoinReply, reply);
-  const Report report = judge(script.run, with({{2, Role::kMote, 0}}));
+  const Report report = judge(script.run, with({{2, Role::kMote}}));
   EXPECT_TRUE(doubts(report).empty());
   bool failed = false;
   for (const Finding& finding : report.findings) {
@@ -179,7 +179,7 @@ TEST(Given, AMoteThatAlsoActsAsASinkFails) {
 }
 
 TEST(Given, ANodeThatIsNowhereIsAFact) {
-  const Report report = judge(capture("c_two_islands"), with({{9, Role::kMote, 0}}));
+  const Report report = judge(capture("c_two_islands"), with({{9, Role::kMote}}));
   EXPECT_EQ(report.facts.back(), "AM address 9, given: no frame of it");
 }
 
@@ -197,7 +197,7 @@ case log
   std::string error;
   ASSERT_TRUE(reader.add_bytes("log", kLog, error)) << error;
   const check::Run run = reader.finish();
-  EXPECT_TRUE(doubts(judge(run, with({{1, Role::kSink, 11}, {2, Role::kMote, 0}}))).empty());
+  EXPECT_TRUE(doubts(judge(run, with({{1, Role::kSink, 11}, {2, Role::kMote}}))).empty());
   const std::vector<Finding> island = doubts(judge(run, with({{1, Role::kSink, 12}})));
   ASSERT_EQ(island.size(), 1U);
   EXPECT_EQ(island[0].node, "sink of island 11");
