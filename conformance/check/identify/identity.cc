@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
+#include <utility>
 
 #include "conformance/check/identify/serial_lines.h"
 #include "conformance/check/identify/streams.h"
@@ -36,6 +38,7 @@ class Identifier {
                                             [](const auto& seen) { return seen.node.empty(); });
     for (const LoggedNode& node : run_.nodes) add_logged(node);
     for (std::uint32_t i = 0; i < run_.seen.size(); ++i) look(i);
+    out_.sees_air = sniffed_ || (out_.sees_air && !applications_alone());
     out_.hears_radio = out_.sees_air || run_.tells_all();
     resolve_streams();
     resolve_lines();
@@ -47,6 +50,15 @@ class Identifier {
   }
 
  private:
+  // Returns whether the logs have the application of a node and nothing of its radio: what they
+  // have of other nodes' radios is then not all that was on the air.
+  bool applications_alone() const {
+    return std::ranges::any_of(out_.devices, [](const Device& device) {
+      return device.application && !device.whole && !device.hearing && !device.radio &&
+             device.role != Role::kBaseStation;
+    });
+  }
+
   std::uint16_t add(Device device) {
     out_.devices.push_back(std::move(device));
     return static_cast<std::uint16_t>(out_.devices.size() - 1);
@@ -80,7 +92,7 @@ class Identifier {
     if (!seen.node.empty()) return look_logged(index);
     if (seen.kind == Observation::Kind::kDamaged) out_.damaged_us.push_back(seen.place.time_us);
     if (seen.kind == Observation::Kind::kRadio) {
-      out_.sees_air = true;
+      sniffed_ = true;
       if (seen.frame.type == am::kJoin) remember_request(seen);
       roles_.look(seen.frame, index);
       mark.device = streams_.assign(index, mark.repeat);  // A stream so far.
@@ -182,19 +194,35 @@ class Identifier {
            options_.testers.end();
   }
 
-  // Returns the sink whose one missing frame the stream is, in the name of an island that nobody
-  // else has: where no frame escapes, its DSN tells whose it is.
-  std::uint16_t misnamed(std::size_t which) const {
+  // Returns the stream whose one missing frame `which` is, in the name of another island: where no
+  // frame escapes, its DSN tells whose it is. It may be the first frame after a reboot.
+  std::optional<std::size_t> misnamed(std::size_t which) const {
     const auto& streams = streams_.all();
     const Stream& stream = streams[which];
-    if (!options_.sniffer_complete || !stream.sink) return kNobody;
-    std::uint16_t found = kNobody;
+    if (!options_.sniffer_complete || !stream.sink || stream.frames != 1) return {};
+    std::optional<std::size_t> found;
     for (std::size_t i = 0; i < streams.size(); ++i) {
-      const bool same = i != which && streams[i].sink && streams[i].am == stream.am;
-      if (same && streams[i].first_island == stream.first_island) return kNobody;
-      if (i < which && streams[i].lacks(stream)) found = device_of_stream_[i];
+      const bool lacks = i < which ? streams[i].lacks(stream) : begins_anew(which, i);
+      if (lacks && found) return {};
+      if (lacks) found = i;
     }
     return found;
+  }
+
+  // Returns whether a later stream is of a sink that was heard before the frame of `which`, and has
+  // the DSNs after it.
+  bool begins_anew(std::size_t which, std::size_t later) const {
+    const auto& streams = streams_.all();
+    const Stream& one = streams[which];
+    const Stream& next = streams[later];
+    const auto dsn = static_cast<std::uint8_t>(one.dsn + 1);
+    if (!next.sink || next.am != one.am || next.frames < kResumeFrames) return false;
+    if (run_.seen[next.first].dsn != dsn || next.first_island == one.first_island) return false;
+    return std::any_of(streams.begin(), streams.begin() + static_cast<std::ptrdiff_t>(which),
+                       [&](const Stream& before) {
+                         return before.sink && before.am == next.am &&
+                                before.first_island == next.first_island;
+                       });
   }
 
   // Returns whether a node that no log names may be blamed. Whole logs have all of their own nodes,
@@ -209,9 +237,8 @@ class Identifier {
     starts_life_.assign(streams.size(), false);
     for (std::size_t i = 0; i < streams.size(); ++i) {
       const Stream& stream = streams[i];
-      if (const std::uint16_t sink = misnamed(i); sink != kNobody) {
-        device_of_stream_[i] = sink;
-        ++out_.devices[sink].frames;
+      if (const std::optional<std::size_t> owner = misnamed(i)) {
+        misnamed_.emplace_back(i, *owner);
         continue;
       }
       const std::uint16_t before = earlier_device(stream);
@@ -220,8 +247,10 @@ class Identifier {
       const bool named = given_.names(stream.am, stream.plain_island);
       const bool goes_on = before != kNobody && follows(stream, before);
       if (goes_on || (before != kNobody && named && !another)) {
-        starts_life_[i] = goes_on && out_.devices[before].radio && (stream.joins || stream.sink) &&
-                          !reboots_.contains(before);
+        // Where no frame escapes, only a reboot makes the DSNs begin elsewhere.
+        const bool anew = stream.joins || stream.sink || options_.sniffer_complete;
+        starts_life_[i] =
+            goes_on && out_.devices[before].radio && anew && !reboots_.contains(before);
         take_stream(out_.devices[before], stream);
         device_of_stream_[i] = before;
         continue;
@@ -236,6 +265,13 @@ class Identifier {
       take_stream(device, stream);
       device_of_stream_[i] = add(device);
     }
+    for (const auto& [stream, owner] : misnamed_) {
+      device_of_stream_[stream] = device_of_stream_[owner];
+      ++out_.devices[device_of_stream_[owner]].frames;
+      if (owner < stream) continue;
+      starts_life_[stream] = starts_life_[owner];
+      starts_life_[owner] = false;
+    }
   }
 
   static void take_stream(Device& device, const Stream& stream) {
@@ -245,7 +281,9 @@ class Identifier {
     } else {
       device.first_us = stream.first_us;
     }
-    device.holes.insert(device.holes.end(), stream.holes.begin(), stream.holes.end());
+    for (const Stream::Hole& hole : stream.holes) {
+      device.holes.emplace_back(hole.from_us, hole.to_us);
+    }
     device.last_us = std::max(device.last_us, stream.last_us);
     device.frames += stream.frames;
     device.radio = true;
@@ -378,17 +416,21 @@ class Identifier {
     }
   }
 
+  // Returns the sink of the line: one of its first island, else of its last, else the only one in
+  // sight, whatever island was given for it.
   std::uint16_t sink_of(const SerialLine& line) const {
     std::uint16_t only = kNobody;
+    std::uint16_t later = kNobody;
     std::size_t sinks = 0;
     for (std::size_t i = 0; i < out_.devices.size(); ++i) {
       const Device& device = out_.devices[i];
       if (!device.known || device.role != Role::kSink) continue;
       only = static_cast<std::uint16_t>(i);
-      if (device.island == line.island || device.island == line.first) return only;
+      if (device.island == line.first) return only;
+      if (later == kNobody && device.island == line.island) later = only;
       ++sinks;
     }
-    // The line of the only sink in sight, whatever island was given for it.
+    if (later != kNobody) return later;
     return line.given && sinks == 1 ? only : kNobody;
   }
 
@@ -439,6 +481,7 @@ class Identifier {
   const Run& run_;
   const Options& options_;
   bool captured_ = false;  // Something but a log that marks its nodes.
+  bool sniffed_ = false;   // A capture has frames of the air.
   const Given given_;
   GivenRoles roles_{given_};
   Streams streams_;
@@ -449,7 +492,8 @@ class Identifier {
   std::set<std::uint16_t> reboots_;  // Nodes whose log tells that they started anew.
   std::vector<std::uint16_t> device_of_stream_;
   std::vector<bool> starts_life_;
-  std::array<std::uint32_t, kRecentFrames> recent_{};  // Observation + 1.
+  std::vector<std::pair<std::size_t, std::size_t>> misnamed_;  // Streams of one frame, and whose.
+  std::array<std::uint32_t, kRecentFrames> recent_{};          // Observation + 1.
   std::size_t recent_next_ = 0;
   std::set<std::pair<std::uint32_t, std::uint16_t>> handed_;  // Frames of recent_, to whom.
   std::array<std::pair<std::uint16_t, std::uint16_t>, 256> requests_{};

@@ -31,10 +31,11 @@
 // From streams to devices: a stream goes on with an earlier device of its address, role and (for a
 // sink) island if that one has fallen silent and the stream begins with a join_request or has
 // kResumeFrames frames. What lies between is a hole, and a sink, or a mote that begins with a
-// join_request, has rebooted. A mote's stream of as many frames beside one that is still heard is a
-// second mote with that id. Any other stream of an address that has a device already is an unknown
-// sender, and so is a sink of which only one reply was heard, to a request that nobody sent. A
-// stream of an address and island that the user named is never an unknown sender.
+// join_request, has rebooted; so has any mote where no frame escapes. A mote's stream of as many
+// frames beside one that is still heard is a second mote with that id. Any other stream of an
+// address that has a device already is an unknown sender, and so is a sink of which only one reply
+// was heard, to a request that nobody sent. A stream of an address and island that the user named
+// is never an unknown sender.
 //
 // Tolerance: kGapMax, kLinkRepeatUs, and kSerialRepeatUs for the host's repetitions on a line.
 // Memory is bounded by kHolesMax (the last hole then grows), kStreamsMax and kLookMax.
@@ -106,7 +107,7 @@ struct Identity {
   std::vector<Contradiction> contradictions;  ///< Between the run and the user.
   std::vector<std::int64_t> damaged_us;       ///< Times of damaged bytes that were a frame once.
 
-  bool sees_air = false;      ///< Some radio frame was seen at all.
+  bool sees_air = false;      ///< A capture, or logs of all nodes, have frames of the air.
   bool hears_radio = false;   ///< So it was, or a whole log has all of them.
   std::int64_t gone_us = -1;  ///< Frames before this are gone: Past::until_us.
 

@@ -23,20 +23,22 @@ constexpr int kSrcIsland = 1;
 constexpr int kMoteIsland = 4;
 constexpr std::uint16_t kBothLines = 0xFFFF;
 
-// Notes that frames between the stream's last one and that time were missed.
-void add_hole(Stream& stream, std::int64_t until_us) {
+// Notes that frames between the stream's last one and that time were missed; `dsn`: only that one.
+void add_hole(Stream& stream, std::int64_t until_us, std::optional<std::uint8_t> dsn = {}) {
   if (stream.holes.size() < kHolesMax) {
-    stream.holes.emplace_back(stream.last_us, until_us);
+    stream.holes.push_back({stream.last_us, until_us, dsn});
   } else {
-    stream.holes.back().second = until_us;
+    stream.holes.back().to_us = until_us;
+    stream.holes.back().dsn.reset();
   }
 }
 
 }  // namespace
 
 bool Stream::lacks(const Stream& other) const {
-  return other.frames == 1 && other.am == am && std::ranges::any_of(missing, [&](const Missing& m) {
-           return m.dsn == other.dsn && m.from_us <= other.first_us && other.first_us <= m.to_us;
+  return other.frames == 1 && other.am == am && std::ranges::any_of(holes, [&](const Hole& hole) {
+           return hole.dsn == other.dsn && hole.from_us <= other.first_us &&
+                  other.first_us <= hole.to_us;
          });
 }
 
@@ -139,10 +141,8 @@ std::uint16_t Streams::assign(std::uint32_t index, bool& repeat) {
   if (best == kLast) return open(index, hint);
   Stream& stream = streams_[best];
   const auto ahead = static_cast<std::uint8_t>(seen.dsn - stream.dsn);
-  if (ahead != 1) add_hole(stream, now);
-  if (ahead == 2 && stream.missing.size() < kHolesMax) {
-    stream.missing.push_back({static_cast<std::uint8_t>(seen.dsn - 1), stream.last_us, now});
-  }
+  const auto before = static_cast<std::uint8_t>(seen.dsn - 1);
+  if (ahead != 1) add_hole(stream, now, ahead == 2 ? std::optional(before) : std::nullopt);
   ++stream.frames;
   go_on(stream, index, hint);
   return best;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "conformance/check/identify/given.h"
@@ -37,14 +38,13 @@ struct Stream {
   std::int64_t first_us = 0;
   std::int64_t last_us = 0;
   std::uint64_t frames = 0;
-  std::vector<std::pair<std::int64_t, std::int64_t>> holes;
-  /// A single frame that is missing.
-  struct Missing {
-    std::uint8_t dsn = 0;
+  /// Frames that were missed between two times.
+  struct Hole {
     std::int64_t from_us = 0;
     std::int64_t to_us = 0;
+    std::optional<std::uint8_t> dsn;  ///< Of the one frame, if it is only one.
   };
-  std::vector<Missing> missing;
+  std::vector<Hole> holes;
   /// Returns whether this one frame of another stream is the one that is missing in this stream.
   bool lacks(const Stream& other) const;
 };
@@ -63,6 +63,8 @@ class Streams {
   void heard_on_serial(const Net& net, std::uint16_t island);
   std::uint16_t sink_am() const { return sink_am_; }
   bool has_sink() const;
+  /// Returns whether a sink of that island was heard.
+  bool has_sink(std::uint16_t island) const;
   /// Notes that a base station changed the island of the sink with frames of island `from` to `to`.
   void rename_island(std::uint16_t from, std::uint16_t to);
 
