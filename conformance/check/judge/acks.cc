@@ -7,6 +7,18 @@
 #include "conformance/machine/transport.h"
 
 namespace rubric::check {
+namespace {
+
+// Returns whether the message's TRANSID or APPID is none that exists.
+bool is_nobodys(const Net& net) {
+  const auto unknown = [](std::uint8_t id) {
+    return id < component::kSynChannel || id > component::kEsnData;
+  };
+  return unknown(net.trans_id) || unknown(net.app_id);
+}
+
+}  // namespace
+
 Acks::Acks(Context& context, std::size_t devices)
     : context_(context),
       arrived_(devices),
@@ -248,6 +260,7 @@ void Acks::delivered(std::uint16_t node, const Observation& seen,
   Ring<Arrived, kRoom>& ring = arrived_[node];
   const bool whole = context_.device(node).whole;  // Then of several the oldest comes first.
   Arrived* best = nullptr;
+  Arrived* nobodys = nullptr;  // It has that content, for no application.
   const auto rank = [whole](const Arrived& a) {
     if (a.forbidden != ReqId::kNone) return 0;
     if (a.delivered >= a.copies) return 1;
@@ -257,6 +270,9 @@ void Acks::delivered(std::uint16_t node, const Observation& seen,
     Arrived& arrived = ring.newest(i);
     if (arrived.net.src != received.src) continue;
     const bool sound = arrived.net.sound;
+    if (sound && is_nobodys(arrived.net) && equal(arrived.net.body(), received.data)) {
+      nobodys = &arrived;
+    }
     if (sound &&
         (arrived.net.app_id != received.app_id || !equal(arrived.net.body(), received.data))) {
       continue;
@@ -271,6 +287,7 @@ void Acks::delivered(std::uint16_t node, const Observation& seen,
     const bool older = whole && best != nullptr && rank(arrived) == rank(*best);
     if (best == nullptr || rank(arrived) > rank(*best) || older) best = &arrived;
   }
+  if (best == nullptr) best = nobodys;
   if (best == nullptr) {
     // The message that the delivery was made from is not reported as missing, too.
     for (std::size_t i = 0; i < ring.size(); ++i) {
@@ -295,10 +312,7 @@ void Acks::delivered(std::uint16_t node, const Observation& seen,
                      {}});
     return;
   }
-  const auto nobodys = [](std::uint8_t id) {
-    return id < component::kSynChannel || id > component::kEsnData;
-  };
-  if (best->net.sound && (nobodys(best->net.trans_id) || nobodys(best->net.app_id))) {
+  if (best->net.sound && is_nobodys(best->net)) {
     context_.report(
         "T1-UNKNOWN"_rule, Severity::kFail, seen.place, node,
         {"The application gets " + name_of(best->net) + ", whose TRANSID is " +
@@ -440,14 +454,15 @@ void Acks::missing_delivery(std::uint16_t node, Arrived& arrived, std::int64_t n
   if (now_us <= due_us || !lacks_delivery(node, arrived)) return;
   // A busy application, or what waits for it, may have filled the buffer.
   const bool held = context_.busy(node, arrived.whole_us, due_us);
-  const bool acked = arrived.acks > 0;
+  const bool acked = arrived.acks > 0;  // Then it was in no buffer any more.
+  const bool full = !acked && context_.crowded(node, arrived.place.time_us);
   const bool nothing = arrived.ackable && !acked;
   const bool cut = arrived.delivers == "N11-SHORT"_rule;
   context_.report(
       acked && !cut ? "T2-DELIVER"_rule : arrived.delivers,
-      held || context_.crowded(node, arrived.place.time_us) ? Severity::kInconclusive
-      : cut                                                 ? Severity::kWeak
-                                                            : Severity::kFail,
+      held || full ? Severity::kInconclusive
+      : cut        ? Severity::kWeak
+                   : Severity::kFail,
       arrived.place, node,
       {"The node was given " + name_of(arrived.net) + (acked ? ", acked it" : "") +
            ", and its application did not get it within " + ms_text(context_.response_us()) +

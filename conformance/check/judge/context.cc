@@ -251,10 +251,55 @@ bool Context::busy(std::uint16_t node, std::int64_t from_us, std::int64_t to_us,
   });
 }
 
+// Returns by how many this changes what a node has still to handle of what it was given, by a log
+// that has all of it: messages that are handed over or sent on, join messages that are answered.
+// Acks come beside the former.
+int Context::backlog_of(std::uint16_t node, std::size_t index) const {
+  const Observation& seen = run.seen[index];
+  const Mark& mark = who.marks[index];
+  if (seen.kind == Observation::Kind::kNotice) {
+    const bool handed = std::holds_alternative<machine::Received>(*seen.notice) ||
+                        std::holds_alternative<machine::AckReceived>(*seen.notice);
+    return mark.device == node && handed ? -1 : 0;
+  }
+  const bool frame = seen.kind == Observation::Kind::kRadio ||
+                     seen.kind == Observation::Kind::kSerial ||
+                     seen.kind == Observation::Kind::kPeis;
+  if (frame && seen.received) return mark.receiver == node ? 1 : 0;
+  if (!frame || mark.device != node) return 0;
+  Net net;
+  if (seen.frame.type != am::kNet || !parse_net(seen.frame.payload, net)) return -1;
+  const bool base = device(node).role == machine::Role::kBaseStation;
+  const bool own = net.src.devid == (base ? machine::kNullDevid : device(node).am);
+  return own ? 0 : -1;
+}
+
+// Returns how many things at most a node had still to handle at once while a message that came at
+// `time_us` was among them, beside that one.
+int Context::backlog(std::uint16_t node, std::int64_t time_us) const {
+  const auto begin =
+      std::ranges::lower_bound(run.seen, time_us - 2 * response_us(), {},
+                               [](const Observation& seen) { return seen.place.time_us; });
+  int waiting = 0;
+  int most = 0;
+  for (auto it = begin; it != run.seen.end() && it->place.time_us < time_us + response_us(); ++it) {
+    const int change = backlog_of(node, static_cast<std::size_t>(it - run.seen.begin()));
+    waiting = std::max(0, waiting + change);
+    if (it->place.time_us >= time_us) most = std::max(most, waiting - 1);
+  }
+  return most;
+}
+
 bool Context::crowded(std::uint16_t node, std::int64_t time_us) const {
   constexpr std::size_t kCrowd = 2;
+  constexpr int kRadioIn = 4;
+  constexpr int kSerialIn = 2;
   constexpr std::int64_t kAroundUs = 100'000;
   const Device& its = device(node);
+  if (its.whole) {
+    const bool mote = its.role == machine::Role::kMote;
+    return backlog(node, time_us) >= (mote ? kRadioIn : kSerialIn);
+  }
   // A message that came at most the response time before may still be in a buffer.
   const auto from =
       std::ranges::upper_bound(run.seen, time_us - std::max(kAroundUs, response_us()), {},

@@ -97,7 +97,7 @@ struct Context {
   bool busy(std::uint16_t node, std::int64_t from_us, std::int64_t to_us,
             std::optional<machine::Link> line = {}) const;
   /// Returns whether so many messages came to the node around that time that they may have found a
-  /// buffer full (decision 122).
+  /// buffer full (decision 122); by a whole log, whether so many waited for it to handle them.
   bool crowded(std::uint16_t node, std::int64_t time_us) const;
   /// Returns the times in which by its log a line or the application of the node was busy.
   const std::vector<BusyTime>& busy_times(std::uint16_t node) const;
@@ -148,6 +148,8 @@ struct Context {
   void report_stranger(const Observation& seen, std::uint16_t node);
 
  private:
+  int backlog_of(std::uint16_t node, std::size_t index) const;
+  int backlog(std::uint16_t node, std::int64_t time_us) const;
   /// Findings that are told as one.
   struct Gathered {
     Finding first;

@@ -202,6 +202,9 @@ void JoinWatch::settle(std::uint16_t node, std::int64_t now_us, bool end) {
 // Returns whether so many frames went through the node around that time that a buffer may have been
 // full (decision 122).
 bool JoinWatch::crowded(std::uint16_t node, const Debt& debt) const {
+  if (context_.device(node).whole) {
+    return context_.crowded(node, context_.run.seen[debt.index].place.time_us);
+  }
   const std::vector<Observation>& seen = context_.run.seen;
   std::size_t frames = 0;
   for (std::size_t i = debt.index; i < seen.size() && frames <= kJoinCrowd; ++i) {
