@@ -134,7 +134,7 @@ void SynapticWatch::settle_unknowns(std::uint16_t device, std::int64_t now_us) {
   if (!its.application || !its.hearing) return;
   for (Unknown& one : node.unknowns) {
     const std::int64_t since = std::max({one.place.time_us, node.step_us, able_us});
-    if (one.told || now_us - since <= patience_us(device, false)) continue;
+    if (one.told || now_us - since <= patience_us(device, false, one.place.time_us)) continue;
     one.told = true;                                      // Said once.
     const bool open = node.unknowns.size() > kTickCrowd;  // A buffer may have been full.
     context_.report("S5-UNKNOWN"_rule, open ? Severity::kInconclusive : Severity::kFail, one.place,

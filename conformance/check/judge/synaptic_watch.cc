@@ -64,7 +64,10 @@ void SynapticWatch::called(std::uint16_t device, const Observation& seen, machin
   node.logged = node.logged || creates;
   if (!node.logged && !steps) return;
   node.own = own;
-  if (steps) node.step_us = seen.place.time_us;
+  if (steps) {
+    node.step_us = seen.place.time_us;
+    node.former_ticks = node.channels.period_ticks;
+  }
   machine::Config config;
   config.role = context_.device(device).role;
   config.id = context_.device(device).am;
@@ -276,7 +279,7 @@ void SynapticWatch::sent(std::uint16_t device, const Observation& seen, const Ne
   if (out->sent_us < out->begun_us) {
     const std::int64_t begun_us = std::max(out->begun_us, node.step_us);
     context_.left(device, out->line, seen.place, begun_us,
-                  begun_us + patience_us(device, true) - context_.response_us(),
+                  begun_us + patience_us(device, true, begun_us) - context_.response_us(),
                   "the data to " + text_of(net.dest));
   } else if (steady) {
     context_.left(device, out->line, seen.place, next_us - off_us, next_us + off_us,
@@ -314,14 +317,15 @@ void SynapticWatch::able(std::uint16_t device, bool radio_on, std::int64_t now_u
 }
 
 // Returns since when the node can send by `line`, or without one tell its application; -1 if it
-// cannot now, or that is unknown.
+// cannot now, or that is unknown. What is `local` needs no radio.
 std::int64_t SynapticWatch::able_since(std::uint16_t device, std::int64_t now_us,
-                                       std::optional<machine::Link> line) const {
+                                       std::optional<machine::Link> line, bool local) const {
   const Node& node = nodes_[device];
   const bool sink = context_.device(device).role == machine::Role::kSink;
-  if (!node.logged || !context_.run.has_time || node.on_us < 0) return -1;
+  const std::int64_t on_us = local ? 0 : node.on_us;
+  if (!node.logged || !context_.run.has_time || on_us < 0) return -1;
   if (!sink && node.member_us < 0) return -1;
-  std::int64_t since = std::max(node.on_us, sink ? 0 : node.member_us);
+  std::int64_t since = std::max(on_us, sink ? 0 : node.member_us);
   for (const BusyTime& busy : context_.busy_times(device)) {
     if (busy.line && busy.line != line) continue;
     if (busy.from_us < now_us && now_us <= busy.to_us) return -1;
@@ -330,12 +334,17 @@ std::int64_t SynapticWatch::able_since(std::uint16_t device, std::int64_t now_us
   return since;
 }
 
-// Returns how long a channel may be silent. Before its first tick a node's clock may be shifted.
-std::int64_t SynapticWatch::patience_us(std::uint16_t device, bool first) const {
+// Returns how long a channel may be silent that did something at `last_us`. Before its first tick a
+// node's clock may be shifted, and a new period may begin with the tick after it was set.
+std::int64_t SynapticWatch::patience_us(std::uint16_t device, bool first,
+                                        std::int64_t last_us) const {
   const std::uint32_t shift = context_.profile().synaptic_phase_ticks *
                               static_cast<std::uint32_t>(context_.device(device).am);
-  return machine::us_of(nodes_[device].channels.period_ticks + (first ? shift : 0)) +
-         context_.response_us() + context_.early_us();
+  const Node& node = nodes_[device];
+  std::uint32_t period = node.channels.period_ticks;
+  if (last_us <= node.step_us) period = std::max(period, node.former_ticks);
+  return machine::us_of(period + (first ? shift : 0)) + context_.response_us() +
+         context_.early_us();
 }
 
 // Returns whether the node's own output has nothing new for this input since its last signal.
@@ -416,7 +425,7 @@ void SynapticWatch::settle_outputs(std::uint16_t device, std::int64_t now_us) {
     if (saves && !first && out.wrote_us < 0) continue;
     const std::int64_t cause = saves && !first ? out.wrote_us : out.waits_us;
     const std::int64_t since = std::max({cause, able_us, node.step_us, out.begun_us});
-    if (now_us - since <= patience_us(device, first)) continue;
+    if (now_us - since <= patience_us(device, first, out.sent_us)) continue;
     // A started channel that was never written is only expected to send (decision 120).
     const bool expected = saves && first && out.wrote_us < 0;
     const bool shifted = !first && node.restart_us > since;  // Perhaps the clock alone.
@@ -456,14 +465,13 @@ void SynapticWatch::settle(std::uint16_t device, std::int64_t now_us) {
 void SynapticWatch::settle_at(std::uint16_t device, std::int64_t now_us) {
   settle_outputs(device, now_us);
   settle_unknowns(device, now_us);
-  const std::int64_t able_us = able_since(device, now_us, {});
-  if (able_us < 0) return;
   Node& node = nodes_[device];
   if (!context_.device(device).application) return;
   for (In& in : node.ins) {
-    if (in.begun_us < 0) continue;
+    const std::int64_t able_us = able_since(device, now_us, {}, in.local);
+    if (in.begun_us < 0 || able_us < 0) continue;
     const std::int64_t since = std::max({in.waits_us, able_us, node.step_us});
-    if (now_us - since <= patience_us(device, in.told_us < 0)) continue;
+    if (now_us - since <= patience_us(device, in.told_us < 0, in.told_us)) continue;
     Place at;
     at.time_us = since;
     const bool shifted = in.told_us >= 0 && node.restart_us > since;  // Perhaps the clock alone.

@@ -108,7 +108,8 @@ class SynapticWatch {
     machine::Synaptic channels;
     std::optional<machine::Notice> result;  ///< What the last call has to return, and why.
     ReqId result_rule = ReqId::kNone;
-    std::int64_t step_us = -1;  ///< The last set_time_step.
+    std::int64_t step_us = -1;       ///< The last set_time_step.
+    std::uint32_t former_ticks = 0;  ///< The period before it, which a tick may end first.
     std::vector<Out> outs;
   };
 
@@ -121,8 +122,8 @@ class SynapticWatch {
   bool news_of_nothing(Node& node, const In& in);
   bool always_news(Node& node, const In& in);
   std::int64_t able_since(std::uint16_t device, std::int64_t now_us,
-                          std::optional<machine::Link> line) const;
-  std::int64_t patience_us(std::uint16_t device, bool first) const;
+                          std::optional<machine::Link> line, bool local = false) const;
+  std::int64_t patience_us(std::uint16_t device, bool first, std::int64_t last_us) const;
   void settle_at(std::uint16_t device, std::int64_t now_us);
   void settle_unknowns(std::uint16_t device, std::int64_t now_us);
   void settle_outputs(std::uint16_t device, std::int64_t now_us);
