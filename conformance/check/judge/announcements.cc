@@ -25,10 +25,11 @@ void Announcements::report(std::uint16_t sink_device, const Observation& seen, c
              " to " + text_of(net.dest) + ", reliable " + number(net.reliable) + ".",
          "From " + text_of(joined.address) + " to " + text_of(to) + ", reliable 0.",
          {}});
+    // With a wrong address inside it is still the report of the member that it comes from.
+    if (!owes(*sink, member.devid) && owes(*sink, net.src.devid)) member = net.src;
+    if (member.devid == net.src.devid && net.src.pid == sink->island) member = net.src;
   }
-  // With a wrong address inside it is still the report of the member that it comes from.
-  const bool inside = owes(*sink, joined.address.devid) || !owes(*sink, net.src.devid);
-  announce(*sink, seen.place, inside ? joined.address : net.src, joined.descriptor, false);
+  announce(*sink, seen.place, member, joined.descriptor, false);
 }
 
 // Returns whether by all that is possible the sink owes the report of that mote.
@@ -52,8 +53,9 @@ void Announcements::announce(SinkWatch& sink, const Place& at, machine::Address 
                              const machine::Descriptor& descriptor, bool notice) {
   PairWatch& watch = joins_.pair(sink, address.devid);
   const ReqId content = notice ? "J6-ADD"_rule : "J6-CONTENT"_rule;
-  if (address.pid != sink.island &&
-      !joins_.keeps_former(sink, address.pid, at, watch.ack.time_us)) {
+  const bool astray =
+      address.pid != sink.island && !joins_.keeps_former(sink, address.pid, at, watch.ack.time_us);
+  if (astray) {
     const ReqId rule = SinkJoins::wrong_island(sink, address.pid, content);
     // SET_ISLAND_ID may have escaped, or found the line switched off.
     const Severity severity = sink.island_sure ? Severity::kFail : Severity::kInconclusive;
@@ -90,7 +92,7 @@ void Announcements::announce(SinkWatch& sink, const Place& at, machine::Address 
                   "serial_joined of mote " + number(address.devid));
   }
   if (next_.empty()) {
-    refuse_report(sink, watch, at, {address.devid, 0, descriptor}, notice);
+    refuse_report(sink, watch, at, {address.devid, 0, descriptor}, notice, astray);
     return;
   }
   if (!notice && watch.ack.frame != 0) {
@@ -131,7 +133,7 @@ void Announcements::announce(SinkWatch& sink, const Place& at, machine::Address 
 }
 
 void Announcements::refuse_report(SinkWatch& sink, PairWatch& watch, const Place& at,
-                                  const Admission& announced, bool notice) {
+                                  const Admission& announced, bool notice, bool astray) {
   const std::uint16_t mote_am = announced.devid;
   const SinkHypothesis& h = watch.set.back();
   Said said;
@@ -178,7 +180,10 @@ void Announcements::refuse_report(SinkWatch& sink, PairWatch& watch, const Place
     said.text = what + " of mote " + number(mote_am) + ", which has sent no ack_join to this sink.";
     said.expected = what + " only after an ack_join with the number of the request.";
   }
-  context_.report(rule, severity, at, sink.device, std::move(said));
+  // A sink that acts for another island takes that island's ack_joins: one cause, which is said.
+  if (!astray || rule != "J6-ISLAND"_rule) {
+    context_.report(rule, severity, at, sink.device, std::move(said));
+  }
   SinkHypothesis next = h;
   next.unknown = false;
   const std::uint16_t seq_num = next.pending ? next.pending->seq_num : watch.request_seq;
@@ -262,7 +267,7 @@ void Announcements::unannounced(const SinkWatch& sink, std::uint16_t mote_am,
                                 const PairWatch& watch, std::int64_t end_us) {
   const Device& device = context_.device(sink.device);
   if (!device.hearing || !device.application || !watch.ack.timed() || watch.set.empty()) return;
-  if (end_us <= watch.ack_whole_us + context_.response_us()) return;
+  if (end_us <= context_.due_us(sink.device, watch.ack_whole_us)) return;
   const auto owes = [](const SinkHypothesis& h) { return !h.unknown && h.owes_notice; };
   if (!std::all_of(watch.set.begin(), watch.set.end(), owes)) return;
   if (joins_.listed(sink) > context_.profile().members_max) return;

@@ -39,7 +39,7 @@ class Announcements {
                 const machine::Descriptor& descriptor, bool notice);
   static bool owes(const SinkWatch& sink, std::uint16_t mote_am);
   void refuse_report(SinkWatch& sink, PairWatch& watch, const Place& at,
-                     const machine::Admission& announced, bool notice);
+                     const machine::Admission& announced, bool notice, bool astray);
   /// Reports each serial_joined that is overdue; `end`: no frame of the sink comes any more.
   void overdue_reports(SinkWatch& sink, std::int64_t end_us);
   void unannounced(const SinkWatch& sink, std::uint16_t mote_am, const PairWatch& watch,

@@ -33,6 +33,9 @@ void InterfaceWatch::called(std::uint16_t device, const Observation& seen) {
     const Interface& radio = node.interfaces[0];
     node.sends = context_.device(device).role == machine::Role::kMote && radio.again;
     node.left.reset();
+    node.sends_off = switched_off(device, Link::kRadio);
+    node.off_left.reset();
+    node.off_next.reset();
     return;
   }
   if (const auto* const get = std::get_if<machine::GetInterface>(seen.call)) {
@@ -53,6 +56,11 @@ void InterfaceWatch::called(std::uint16_t device, const Observation& seen) {
 void InterfaceWatch::told(std::uint16_t device, const Observation& seen) {
   Node& node = look(device);
   if (const auto* result = std::get_if<machine::SendResult>(seen.notice)) {
+    if (node.sends_off && node.off_left == result->seq_num) {
+      judge_off(device, seen, node, result->seq_num);
+    } else if (node.sends_off && result->seq_num != machine::kNoSeq) {
+      node.off_next = result->seq_num;
+    }
     if (node.sends && node.left == result->seq_num) {  // It left before the call returned.
       node.interfaces[0].again = false;
       context_.findings.kept("N10-ON"_rule);
@@ -119,8 +127,25 @@ void InterfaceWatch::sent(std::uint16_t device, const Observation& seen) {
                    {}});
 }
 
-void InterfaceWatch::own_message(std::uint16_t device, std::uint16_t seq_num) {
+// Says that the radio sends what send was called for while it was off: that was not on its way.
+void InterfaceWatch::judge_off(std::uint16_t device, const Observation& seen, Node& node,
+                               std::uint16_t seq_num) {
+  node.sends_off = false;
+  node.off_next.reset();
+  context_.report("N10-OFF"_rule, Severity::kFail, seen.place, device,
+                  {"The message with number " + number(seq_num) +
+                       " leaves by radio, which was off when send was called.",
+                   "Silence until the radio is on.",
+                   {}});
+}
+
+void InterfaceWatch::own_message(std::uint16_t device, const Observation& seen,
+                                 std::uint16_t seq_num) {
   Node& node = nodes_[device];
+  if (seen.frame.link == Link::kRadio && switched_off(device, Link::kRadio)) {
+    if (node.off_next == seq_num) judge_off(device, seen, node, seq_num);
+    node.off_left = seq_num;
+  }
   if (node.sends) node.left = seq_num;
   if (node.awaited != seq_num) return;
   node.awaited.reset();

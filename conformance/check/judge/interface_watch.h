@@ -20,7 +20,7 @@ class InterfaceWatch {
   /// Judges a frame that `node` sends: was its interface on, and its line free?
   void sent(std::uint16_t node, const Observation& seen);
   /// Notes a message of the node's own.
-  void own_message(std::uint16_t node, std::uint16_t seq_num);
+  void own_message(std::uint16_t node, const Observation& seen, std::uint16_t seq_num);
   /// Returns whether the interface was off for so long that no frame from before can still come.
   bool off(std::uint16_t node, machine::Link link, std::int64_t now_us) const;
   /// Returns whether it is switched off; frames that were just on their way may still have come.
@@ -45,10 +45,14 @@ class InterfaceWatch {
     std::optional<std::uint16_t> left;     ///< The number of a message that left since the call.
     std::optional<std::uint16_t> awaited;  ///< The number of a message accepted since then.
     Place accepted;
+    bool sends_off = false;                 ///< The last call of send came while the radio was off;
+    std::optional<std::uint16_t> off_left;  ///< the number of a message that left since,
+    std::optional<std::uint16_t> off_next;  ///< or of the one that it accepted.
   };
 
   Node& look(std::uint16_t node);
   static Interface* find(Node& node, machine::Link link);
+  void judge_off(std::uint16_t node, const Observation& seen, Node& watch, std::uint16_t seq_num);
 
   Context& context_;
   std::vector<Node> nodes_;

@@ -31,13 +31,25 @@ void JoinCalls::begin_life(std::uint16_t mote) {
 bool JoinCalls::request(std::uint16_t mote, const Observation& seen, const Request& request) {
   Calls& calls = calls_[mote];
   calls.asks = false;
-  const std::optional<std::uint16_t> before = std::exchange(calls.number, request.seq_num);
+  const std::optional<Request> before = std::exchange(calls.asked, request);
+  const Place before_at = std::exchange(calls.asked_at, seen.place);
   const bool fresh = std::exchange(calls.fresh, false);
   const std::vector<MoteHypothesis>& set = std::as_const(motes_).set(mote);
   if (calls.logged && calls.open == 0 && set.size() == 1 && !set[0].unknown &&
       set[0].join.phase == Phase::kOutside) {
     context_.report("J1-CALLED"_rule, Severity::kFail, seen.place, mote,
                     {"A join_request without a joinIsland call.", "Silence.", {}});
+  }
+  const bool soon =
+      seen.place.timed() && before_at.timed() &&
+      seen.place.time_us - before_at.time_us <= context_.join_period_us() + context_.response_us();
+  if (!calls.logged && soon && before && before->seq_num == request.seq_num &&
+      before->descriptor != request.descriptor) {
+    context_.report("J1-SEQ"_rule, Severity::kWeak, seen.place, mote,
+                    {"The join_request with number " + number(request.seq_num) +
+                         " has another descriptor than the one before it.",
+                     "A call keeps its descriptor, and the next one takes another number.",
+                     {}});
   }
   const bool as_member = calls.last && calls.open > 0 && !set.empty() &&
                          set.back().join.phase == Phase::kMember &&
@@ -49,7 +61,7 @@ bool JoinCalls::request(std::uint16_t mote, const Observation& seen, const Reque
       context_.due_us(mote, called_us) != called_us + context_.response_us()) {
     return as_member;
   }
-  if (fresh && before == request.seq_num) {
+  if (fresh && before && before->seq_num == request.seq_num) {
     context_.report("J1-SEQ"_rule, Severity::kWeak, seen.place, mote,
                     {"The first join_request of a joinIsland call has number " +
                          number(request.seq_num) + ", as had those of the call before.",

@@ -33,12 +33,13 @@ class JoinCalls {
     std::optional<machine::JoinIsland> earlier;  ///< Open when the last one came.
     bool refusable = true;                       ///< That one may fail at once.
     Place called;
-    bool waits = false;                   ///< It came while another one ran.
-    bool asks = false;                    ///< It owes a join_request.
-    std::int64_t off_since_us = -1;       ///< Its application switched the radio off; -1: it is on.
-    std::int64_t off_us = 0;              ///< How long it was off in the open call.
-    std::optional<std::uint16_t> number;  ///< Of the last request.
-    bool fresh = false;                   ///< The last call, of a mote with none open, sent none.
+    bool waits = false;              ///< It came while another one ran.
+    bool asks = false;               ///< It owes a join_request.
+    std::int64_t off_since_us = -1;  ///< Its application switched the radio off; -1: it is on.
+    std::int64_t off_us = 0;         ///< How long it was off in the open call.
+    std::optional<Request> asked;    ///< The last request,
+    Place asked_at;                  ///< and where.
+    bool fresh = false;              ///< The last call, of a mote with none open, sent none.
   };
 
   void ends(std::uint16_t mote, std::int64_t end_us);

@@ -101,6 +101,7 @@ void Judge::look(std::uint32_t index) {
       announcements_.ends(mark.device, seen.place.time_us);
       originals_.ends(mark.device, seen.place.time_us, interfaces_);
       begin_life(mark.device, INT64_MAX);
+      if (is(mark.device, Role::kMote)) motes_.booted(mark.device, seen.place.time_us);
       break;
     case Kind::kLinkAck:
     case Kind::kDamaged: break;
@@ -416,7 +417,7 @@ void Judge::radio_net(std::uint32_t index, const Observation& seen, const Mark& 
 // Takes a message of the node's own.
 void Judge::own_message(std::uint16_t node, const Observation& seen, const Net& net,
                         machine::Link link, machine::Address own) {
-  interfaces_.own_message(node, net.seq_num);
+  interfaces_.own_message(node, seen, net.seq_num);
   originals_.sent(node, seen, net, link, own);
   if (net.is_ack()) acks_.sent(node, seen, net);  // Late, it is not missing (decision 125).
   acks_.showed_life(node, seen.place.time_us);

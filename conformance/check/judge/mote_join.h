@@ -78,6 +78,7 @@ struct MoteWatch {
   std::vector<MoteHypothesis> set;
   std::optional<Reply> wrong_reply;  ///< The last that its request had not asked for.
   Place wrong_place;
+  std::int64_t booted_us = -1;  ///< By its log; -1: it shows no start.
 };
 
 /// Returns whether the mote of that address is to ignore such an offer (J4-ADDRESS).
@@ -88,6 +89,8 @@ class MoteJoins {
   MoteJoins(Context& context, std::size_t devices);
 
   void begin_life(std::uint16_t mote);
+  /// Notes that by its log the mote starts anew, with nothing before.
+  void booted(std::uint16_t mote, std::int64_t now_us) { motes_[mote].booted_us = now_us; }
   /// Judges a request; a member's if a call of joinIsland asked for it `as_member`.
   void request(std::uint16_t mote, const Observation& seen, const Request& request,
                bool as_member = false);

@@ -30,6 +30,7 @@ Originals::Originals(Context& context, std::size_t devices)
       stale_(devices),
       acks_(devices),
       calls_(devices),
+      strays_us_(devices, -1),
       begun_(devices),
       moved_(devices) {}
 
@@ -344,8 +345,9 @@ Originals::Asked Originals::judge_wrap(std::uint16_t node, const Observation& se
     same->left = net.seq_num;
     judge_late(node, seen, *same, link);
     const std::int64_t called_us = same->place.time_us;
+    const bool during = !same->result;  // It leaves before the call returns.
+    if (during || same->result == net.seq_num) judge_order(node, seen, *same);
     if (same->result == net.seq_num) {
-      judge_order(node, seen, *same);
       context_.left(node, link, seen.place, called_us, same->told_us + kCallUs, name_of(net));
     }
     if (same->result && !calls.full()) judge_result(node, seen, *same);

@@ -120,6 +120,7 @@ class Originals {
   };
   std::vector<Ring<Ack, kRoom>> acks_;
   std::vector<Ring<Call, kRoom>> calls_;
+  std::vector<std::int64_t> strays_us_;  ///< When a node was last given an ack of nothing it sent.
   std::vector<bool> begun_;  ///< Its start is in the log, so that it has no older calls.
   std::vector<bool> moved_;  ///< Its application set the island of a base station.
 };

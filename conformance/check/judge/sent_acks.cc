@@ -19,13 +19,16 @@ void Originals::ack_heard(std::uint16_t node, const Net& ack, std::uint16_t acke
 void Originals::ack_given(std::uint16_t node, const Net& ack, std::int64_t now_us) {
   const std::int32_t acked = machine::acked_seq_num(ack.body());
   Ring<Sent, kRoom>& ring = sent_[node];
+  bool awaited = false;
   for (std::size_t i = 0; i < ring.size(); ++i) {
     Sent& sent = ring.newest(i);
     const bool matches = sent.net.seq_num == acked && sent.net.reliable == 1 &&
                          sent.net.src == ack.dest && sent.net.dest == ack.src &&
                          sent.net.app_id == ack.app_id;
     if (matches && sent.given_us < 0) sent.given_us = now_us;
+    if (sent.net.seq_num == acked && sent.told == 0) awaited = true;
   }
+  if (!awaited) strays_us_[node] = now_us;
 }
 
 // Returns whether an ack of that number was heard which fits.
@@ -133,7 +136,10 @@ void Originals::told(std::uint16_t node, const Observation& seen, const machine:
                      "An ack counts from the message's destination, with its APPID.",
                      {}});
   } else if (ack.success && !match->acked) {
-    context_.report("T3-SUCCESS"_rule, context_.without(kNobody, match->place.time_us, now),
+    const Device& device = context_.device(node);  // A mote hears by radio alone.
+    const bool all = device.hearing && device.role == Role::kMote;
+    context_.report(strays_us_[node] >= match->place.time_us ? "T3-MATCH"_rule : "T3-SUCCESS"_rule,
+                    all ? Severity::kFail : context_.without(kNobody, match->place.time_us, now),
                     seen.place, node,
                     {what + ", but no ack of it was heard.", "No receive_ack before the ack.", {}});
   } else if (!ack.success && seen.place.timed() && match->place.timed() &&

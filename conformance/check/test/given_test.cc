@@ -146,8 +146,8 @@ TEST(Given, AWrongRoleIsSaidOnceAndTheRunBelieved) {
     ReqId rule;
   } kRows[] = {
       {{1, Role::kMote}, "sink of island 11", "J10-MOTE"_rule},
-      {{2, Role::kSink, 0}, "mote 2", "J10-SINK"_rule},
-      {{2, Role::kBaseStation, 0}, "mote 2", ReqId::kNone},
+      {{2, Role::kSink}, "mote 2", "J10-SINK"_rule},
+      {{2, Role::kBaseStation}, "mote 2", ReqId::kNone},
   };
   for (const auto& row : kRows) {
     const Options options = with({row.node});
@@ -201,7 +201,7 @@ case log
   const std::vector<Finding> island = doubts(judge(run, with({{1, Role::kSink, 12}})));
   ASSERT_EQ(island.size(), 1U);
   EXPECT_EQ(island[0].node, "sink of island 11");
-  const std::vector<Finding> role = doubts(judge(run, with({{2, Role::kSink, 0}})));
+  const std::vector<Finding> role = doubts(judge(run, with({{2, Role::kSink}})));
   ASSERT_EQ(role.size(), 1U);
   EXPECT_EQ(role[0].node, "mote 2");
 }

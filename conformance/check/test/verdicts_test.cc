@@ -74,16 +74,21 @@ TEST(Verdicts, ALateReply) {
 // What of a log of the application alone sends and receives is seen nowhere.
 TEST(Verdicts, AnApplicationAloneIsNotBlamed) {
   const std::string log =
-      "%rtr 1\n%node m5 mote id=5 iut\ncase x\n" + at(0, "m5 < app join(telosb_demo light led)") +
+      "%node m5 mote id=5\ncase x\n" + at(0, "m5 < app join(telosb_demo light led)") +
       at(10, "m5 > app joined(11:5 success)") +
       at(1000, "m5 < app send(dest=11:1 app_id=mockup reliable=1 data=x01)") +
       at(1000, "m5 > app send_result(20)") + at(1010, "m5 > app ack_received(mockup 20 success)") +
       at(2000, "m5 < app send(dest=11:1 app_id=mockup reliable=0 data=x01)") +
       at(2000, "m5 > app send_result(21)") + at(9000, "m5 > app received(11:1 mockup x07)");
+  // Nor is it if the log has the radio of another node.
+  const std::string other =
+      at(9500, "m6 > rA am=6->1 join_request(seq_num=5 mote_type=1 transducers=1 actuators=1)");
   for (const bool complete : {false, true}) {
-    const Report report = judge_log(log, complete);
-    EXPECT_EQ(broken_in(report), "");
-    EXPECT_EQ(report.verdict, Verdict::kInconclusive);
+    for (const std::string& its : {std::string(), other}) {
+      const Report report = judge_log("%rtr 1\n%node m6 mote id=6\n" + log + its, complete);
+      EXPECT_EQ(broken_in(report), "") << its;
+      EXPECT_EQ(report.verdict, Verdict::kInconclusive);
+    }
   }
 }
 
