@@ -252,8 +252,8 @@ bool Context::busy(std::uint16_t node, std::int64_t from_us, std::int64_t to_us,
 }
 
 // Returns by how many this changes what a node has still to handle of what it was given, by a log
-// that has all of it: messages that are handed over or sent on, join messages that are answered.
-// Acks come beside the former.
+// that has all of it: messages that are handed over or sent on, and acked where that is owed, and
+// join messages that are answered.
 int Context::backlog_of(std::uint16_t node, std::size_t index) const {
   const Observation& seen = run.seen[index];
   const Mark& mark = who.marks[index];
@@ -265,13 +265,13 @@ int Context::backlog_of(std::uint16_t node, std::size_t index) const {
   const bool frame = seen.kind == Observation::Kind::kRadio ||
                      seen.kind == Observation::Kind::kSerial ||
                      seen.kind == Observation::Kind::kPeis;
-  if (frame && seen.received) return mark.receiver == node ? 1 : 0;
-  if (!frame || mark.device != node) return 0;
+  if (!frame || (seen.received ? mark.receiver : mark.device) != node) return 0;
   Net net;
-  if (seen.frame.type != am::kNet || !parse_net(seen.frame.payload, net)) return -1;
+  const bool message = seen.frame.type == am::kNet && parse_net(seen.frame.payload, net);
   const bool base = device(node).role == machine::Role::kBaseStation;
-  const bool own = net.src.devid == (base ? machine::kNullDevid : device(node).am);
-  return own ? 0 : -1;
+  const std::uint16_t own = base ? machine::kNullDevid : device(node).am;
+  if (seen.received) return message && net.reliable == 1 && net.dest.devid == own ? 2 : 1;
+  return message && net.src.devid == own && !net.is_ack() ? 0 : -1;
 }
 
 // Returns how many things at most a node had still to handle at once while a message that came at
