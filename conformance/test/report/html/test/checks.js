@@ -36,6 +36,17 @@ async function filters(page, go) {
   assert.ok(both.every((name) => /base_station|n11/.test(name)), both.join(' '));
 }
 
+async function order(page, go) {
+  await go('#/cases');
+  const verdicts = await page.locator('#matrix tbody tr').evaluateAll((all) => all.map((row) => {
+    const its = [...row.querySelectorAll('.verdict')].map((one) => one.textContent);
+    return its.every((one) => one === 'pass') ? 'pass' : its.find((one) => one !== 'pass');
+  }));
+  const begin = verdicts.indexOf('pass');
+  assert.ok(begin > 0 && verdicts[0] === 'fail', verdicts.slice(0, 5).join(' '));
+  assert.deepStrictEqual([...new Set(verdicts.slice(begin))], ['pass']);
+}
+
 async function search(page, go) {
   await go('#/cases');
   await page.getByLabel('Search').fill('J4-SEQ  J5-accept');
@@ -268,7 +279,8 @@ async function narrow(page, go) {
 }
 
 const kTelephone = { shape: { width: 390, height: 800 } };
-const checks = [['filters', filters], ['search', search], ['an earlier run', compared],
+const checks = [['filters', filters], ['failures first', order], ['search', search],
+  ['an earlier run', compared],
   ['a failing case and its chart', failing], ['bytes by field', bytes], ['files', files],
   ['rules', rules], ['the figures of the paper', figures], ['keyboard', keyboard],
   ['light and dark', themes], ['markup is text', harmless], ['places that are not', nowhere],
