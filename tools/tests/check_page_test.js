@@ -1,7 +1,7 @@
 'use strict';
-// The pages of `rubric check --report` and `rubric test --report` in a real Chromium: failures first,
-// usable by everybody, and no wider than a telephone. Usage: node check_page_test.js RUBRIC; run in
-// the project's folder.
+// The pages of `rubric check --report` and `rubric test --report` in a real Chromium: failures
+// first, usable by everybody, and no wider than a telephone. Usage: node check_page_test.js RUBRIC;
+// run in the project's folder.
 const assert = require('node:assert');
 const { spawnSync } = require('node:child_process');
 const fs = require('node:fs');
