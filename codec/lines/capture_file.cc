@@ -105,7 +105,7 @@ bool CaptureFile::finish() {
 }
 
 void CaptureFile::complain() const {
-  text::print(stderr, "rubric: {}: {}\n", path_, std::strerror(error_));
+  text::print(stderr, "rubric: cannot write {}: {}\n", path_, std::strerror(error_));
 }
 
 }  // namespace rubric::lines

@@ -11,6 +11,7 @@
 #include "conformance/check/input/read.h"
 #include "conformance/check/judge/findings.h"
 #include "conformance/check/judge/judge.h"
+#include "conformance/check/report/html.h"
 #include "conformance/check/report/json.h"
 #include "conformance/check/report/junit.h"
 #include "conformance/check/report/text.h"
@@ -61,7 +62,10 @@ std::string reports(const report::Story& story) {
   const std::string text = report::text_report(story, options);
   const std::string junit = report::junit_report(story);
   require(!text.empty() && junit.find("</testsuite") != std::string::npos, "reports are whole");
-  return json + text + junit;
+  const std::string page = report::html_report(story, options, "");
+  require(page.ends_with("</html>\n"), "the page is whole");
+  require(page.find("<script") == page.npos, "no text becomes a part of the page");
+  return json + text + junit + page;
 }
 
 std::string checked(std::string_view bytes, const check::Options& given) {

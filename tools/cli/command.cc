@@ -118,6 +118,11 @@ Option& Option::repeatable() {
   return *this;
 }
 
+Option& Option::joined_by(char separator) {
+  option_->join(separator);
+  return *this;
+}
+
 Option& Option::type_name(const std::string& name) {
   option_->type_name(name);
   return *this;

@@ -63,6 +63,8 @@ class Option {
   Option& one_at_a_time();
   /// Does the same as one_at_a_time(); the help shows a single value.
   Option& repeatable();
+  /// Takes the option more than once, as one text with `separator` between the values.
+  Option& joined_by(char separator);
   Option& type_name(const std::string& name);
   Option& description(const std::string& text);
   Option& delimiter(char separator);

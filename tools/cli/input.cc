@@ -438,8 +438,10 @@ void add_spec_option(Command& app, InputOptions& options, const std::string& nam
       options.spec == kAutoSpec ? "; auto is rubicon, unless another fits what is read better" : "";
   app.add_option(names, options.spec,
                  "Use this protocol above the AM layer: a name (list prints them; none shows bare "
-                 "messages), or a .ksy file" +
+                 "messages), a .ksy file, or several, as a,b: of two with the same AM type the "
+                 "first" +
                      by_content)
+      .joined_by(',')
       .show_default();
 }
 
@@ -476,7 +478,8 @@ bool goes_on(const InputOptions& options) {
 std::vector<std::string> all_inputs(const InputOptions& options) {
   std::vector<std::string> out = options.files;
   if (out.empty()) out.emplace_back("-");
-  if (options.spec.ends_with(".ksy")) out.push_back(options.spec);
+  const std::vector<std::string> specs = files_in(options.spec);
+  out.insert(out.end(), specs.begin(), specs.end());
   return out;
 }
 

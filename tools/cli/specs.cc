@@ -8,6 +8,8 @@
 #include <mutex>
 #include <utility>
 
+#include "codec/generate/routes.h"
+#include "codec/reflect/combined.h"
 #include "codec/reflect/registry.h"
 #include "codec/reflect/requirements.h"
 #include "codec/reflect/suggest.h"
@@ -31,6 +33,11 @@ struct ReadSpec {
   std::unique_ptr<rubricc::BuiltTables> tables;
   rubricc::BuiltSpec built;
 };
+
+std::map<std::string, reflect::CombinedProtocol>& combined_specs() {
+  static std::map<std::string, reflect::CombinedProtocol> specs;
+  return specs;
+}
 
 std::map<std::string, ReadSpec>& read_specs() {
   static std::map<std::string, ReadSpec> specs;
@@ -107,7 +114,9 @@ std::vector<std::string> protocol_names() {
   return names;
 }
 
-const reflect::Protocol& protocol_of(const std::string& spec) {
+namespace {
+
+const reflect::Protocol& single_protocol_of(const std::string& spec) {
   if (spec == "list") list_specs();
   if (const reflect::Protocol* built_in = reflect::find_protocol(spec)) return *built_in;
   const std::vector<std::string> names = protocol_names();
@@ -125,13 +134,62 @@ const reflect::Protocol& protocol_of(const std::string& spec) {
       "--spec", fmt::format("unknown protocol '{}'{}", spec, reflect::did_you_mean(spec, names)));
 }
 
+/// Returns what --spec has for this protocol.
+std::string name_of(const reflect::Protocol& protocol) {
+  for (const auto& [name, spec] : combined_specs()) {
+    if (&spec.protocol() == &protocol) return name;
+  }
+  for (const auto& [name, spec] : read_specs()) {
+    if (spec.built.protocol == &protocol) return name;
+  }
+  return protocol.id;
+}
+
+}  // namespace
+
+const reflect::Protocol& protocol_of(const std::string& spec) {
+  const auto known = combined_specs().find(spec);
+  if (known != combined_specs().end()) return known->second.protocol();
+  std::vector<reflect::ProtocolPart> parts;
+  for (const std::string& name : specs_in(spec)) {
+    const reflect::Protocol& one = single_protocol_of(name);
+    const auto same = [&](const reflect::ProtocolPart& part) { return part.protocol == &one; };
+    if (std::none_of(parts.begin(), parts.end(), same)) parts.push_back({&one, &routes_of(one)});
+  }
+  if (parts.size() == 1) return *parts.front().protocol;
+  try {
+    return combined_specs().try_emplace(spec, parts).first->second.protocol();
+  } catch (const std::invalid_argument& error) {
+    throw UsageError("--spec", error.what());
+  }
+}
+
+std::vector<std::string> specs_in(const std::string& spec) {
+  struct stat status {};
+  if (::stat(spec.c_str(), &status) == 0) return {spec};
+  std::vector<std::string> out;
+  std::size_t begin = 0;
+  for (std::size_t end = 0; end != spec.npos; begin = end + 1) {
+    end = spec.find(',', begin);
+    out.push_back(spec.substr(begin, end == spec.npos ? end : end - begin));
+  }
+  return out;
+}
+
+std::vector<std::string> files_in(const std::string& spec) {
+  std::vector<std::string> out = specs_in(spec);
+  std::erase_if(out, [](const std::string& name) { return !names_file(name); });
+  return out;
+}
+
 std::string text_of_spec(const std::string& spec) {
   std::string out;
-  if (!names_file(spec)) return out;
-  read_spec(spec);
-  for (const auto& one : read_specs().at(spec).model.specs) {
-    std::string text;
-    if (text::read_file(one->file, text) == 0) out += text;  // Shipped ones are no files.
+  for (const std::string& file : files_in(spec)) {
+    read_spec(file);
+    for (const auto& one : read_specs().at(file).model.specs) {
+      std::string text;
+      if (text::read_file(one->file, text) == 0) out += text;  // Shipped ones are no files.
+    }
   }
   return out;
 }
@@ -168,11 +226,14 @@ std::string spec_with_message(const reflect::Protocol& chosen, std::string_view 
   });
 }
 
-const reflect::RouteTable* read_routes_of(const reflect::Protocol& protocol) {
-  for (const auto& [name, spec] : read_specs()) {
-    if (spec.built.protocol == &protocol) return spec.built.routes;
+const reflect::RouteTable& routes_of(const reflect::Protocol& protocol) {
+  for (const auto& [name, spec] : combined_specs()) {
+    if (&spec.protocol() == &protocol) return spec.routes();
   }
-  return nullptr;
+  for (const auto& [name, spec] : read_specs()) {
+    if (spec.built.protocol == &protocol) return *spec.built.routes;
+  }
+  return *generate::routes_of(protocol);
 }
 
 std::string dissector_with(const std::string& file) {
@@ -223,8 +284,11 @@ void OtherSpecs::look_closer(const reflect::Frame& frame, std::vector<Hint>& hin
   if (others_.empty()) {
     static std::mutex reading;  // Read specs are kept in one place.
     const std::lock_guard lock(reading);
+    chosen_name_ = name_of(chosen_);
+    const std::vector<std::string> chosen = specs_in(chosen_.id);
     for (const std::string& name : protocol_names()) {
-      if (name != kNone && name != chosen_.id) others_.emplace_back(protocol_of(name));
+      const bool is_chosen = std::find(chosen.begin(), chosen.end(), name) != chosen.end();
+      if (name != kNone && !is_chosen) others_.emplace_back(protocol_of(name));
     }
   }
   Hint hint{frame.am.present ? frame.am.type : -1, {}};
@@ -236,12 +300,18 @@ void OtherSpecs::look_closer(const reflect::Frame& frame, std::vector<Hint>& hin
     if (tried.malformed() || tried.decoded.note_count() != 0) continue;
     if (!frame.am.present) {
       const char* message = tried.decoded.message() ? tried.decoded.message()->name : "frame";
-      hint.text = fmt::format("rubric: a {} fits {}: --spec {}\n", message, name, name);
+      hint.text =
+          fmt::format("rubric: a {} fits {}: --spec {},{}\n", message, name, chosen_name_, name);
       said_of_links_ = true;
       break;
     }
-    const std::string_view also = claims(chosen_, frame.am.type) ? "also fits" : "fits";
-    hint.text += fmt::format("rubric: AM {} {} {}: --spec {}\n", frame.am.type, also, name, name);
+    if (claims(chosen_, frame.am.type)) {
+      hint.text +=
+          fmt::format("rubric: AM {} also fits {}: --spec {}\n", frame.am.type, name, name);
+    } else {
+      hint.text += fmt::format("rubric: AM {} fits {}: --spec {},{}\n", frame.am.type, name,
+                               chosen_name_, name);
+    }
     said_[frame.am.type] = true;
   }
   if (!hint.text.empty()) hints.push_back(std::move(hint));

@@ -20,10 +20,17 @@ const std::map<std::string, std::string_view, std::less<>>& shipped_specs();
 /// Returns the ids of the protocols that --spec takes by name, the built-in ones first.
 std::vector<std::string> protocol_names();
 
-/// Returns the protocol that --spec names. A name that ends in .ksy is a file, which is read now
-/// with its imports: its mistakes are printed as rubricc does, and end the subcommand. Throws
+/// Returns the protocol that --spec names; of several, with commas between them, one that has the
+/// messages of all (reflect::CombinedProtocol). A name that ends in .ksy is a file, which is read
+/// now with its imports: its mistakes are printed as rubricc does, and end the subcommand. Throws
 /// UsageError with the nearest name if there is none. `list` prints the names, and ends it.
 const reflect::Protocol& protocol_of(const std::string& spec);
+
+/// Returns the names that a --spec has between commas; the name of a file may have some, too.
+std::vector<std::string> specs_in(const std::string& spec);
+
+/// Returns those of them that are files.
+std::vector<std::string> files_in(const std::string& spec);
 
 /// Returns the texts of the files that a --spec reads, imported ones too; empty of a name.
 std::string text_of_spec(const std::string& spec);
@@ -44,8 +51,8 @@ std::string spec_with(const reflect::Protocol& chosen,
 /// Does the same for a protocol with a message of this name.
 std::string spec_with_message(const reflect::Protocol& chosen, std::string_view name);
 
-/// Returns the routes to the messages of a protocol that was not built in; null if it was.
-const reflect::RouteTable* read_routes_of(const reflect::Protocol& protocol);
+/// Returns the routes to the messages of a protocol that protocol_of() returned.
+const reflect::RouteTable& routes_of(const reflect::Protocol& protocol);
 
 /// Returns the dissector of the shipped specs and the one of this file.
 std::string dissector_with(const std::string& file);
@@ -81,6 +88,7 @@ class OtherSpecs {
   void look_closer(const reflect::Frame& frame, std::vector<Hint>& hints);
 
   const reflect::Protocol& chosen_;
+  std::string chosen_name_;                    // As --spec has it.
   std::vector<reflect::FrameDecoder> others_;  // Made when a first message does not fit.
   std::array<bool, 256> said_{};
   bool said_of_links_ = false;  // Of frames without an active message.

@@ -24,16 +24,16 @@ void set_verdict(Command& command, std::function<int()> run) {
   });
 }
 
-void unreadable(const char* command, std::string what) {
+void unreadable(std::string what) {
   while (what.ends_with('\n')) what.pop_back();
-  text::print(stderr, "rubric {}: {}\n", command, what);
+  text::print(stderr, "rubric: {}\n", what);
   exit_with(kExitInput);
 }
 
-std::string text_of_file(const char* command, const std::string& path) {
+std::string text_of_file(const std::string& path) {
   std::string out;
   std::string error;
-  if (!read_file(path, out, error)) unreadable(command, error);
+  if (!read_file(path, out, error)) unreadable(error);
   return out;
 }
 

@@ -13,8 +13,8 @@ namespace rubric::cli {
 void set_verdict(Command& command, std::function<int()> run);
 
 /// Ends the subcommand because its input cannot be read. `what` may be a list of lines.
-[[noreturn]] void unreadable(const char* command, std::string what);
+[[noreturn]] void unreadable(std::string what);
 /// Returns a whole file, or stdin for "-"; ends the subcommand if that cannot be read.
-std::string text_of_file(const char* command, const std::string& path);
+std::string text_of_file(const std::string& path);
 
 }  // namespace rubric::cli

@@ -67,7 +67,7 @@ std::vector<const suite::SuiteCase*> chosen(const std::string& what,
             : traces.empty() ? suite::Cases::own()
                              : suite::Cases::of(traces);
   } catch (const std::runtime_error& error) {
-    cli::unreadable("chart", error.what());
+    cli::unreadable(error.what());
   }
   std::vector<const suite::SuiteCase*> out;
   std::vector<std::string> names;
@@ -130,7 +130,7 @@ void run_chart(const ChartOptions& options) {
   const std::size_t end = suffix == std::string::npos ? suffix : suffix + 4;
   cli::keep_apart("--out", options.out, {options.what.substr(0, end)});
   std::vector<std::string> traces;
-  use_protocol("chart", options.folder, {}, traces);
+  use_protocol(options.folder, {}, traces);
   if (!trace::protocol().has_machine && options.target.empty()) {
     throw cli::UsageError("--protocol", "the reference machine plays RUBICON alone; give --target");
   }

@@ -86,7 +86,7 @@ bool add_file(const CheckOptions& options, const std::string& file, check::RunRe
   one.files = {file};
   one.prints = false;
   const cli::InputResult result = cli::read_packets(one, take, {}, logs);
-  if (!error.empty()) cli::unreadable(kCheckCommand, error);
+  if (!error.empty()) cli::unreadable(error);
   if (result.failed && !result.damaged) cli::exit_with(cli::kExitInput);
   if (!is_log && !index) reader.open(name);
   return !result.damaged;
@@ -121,7 +121,7 @@ int check_files(const CheckOptions& options) {
   check::Run whole = read_run(options, undamaged);
   check::Run part = ranges.empty() ? std::move(whole) : report::part_of(whole, ranges, judged);
   if (std::string error; !check::drop_duplicates(part, judged, error)) {
-    cli::unreadable(kCheckCommand, error);
+    cli::unreadable(error);
   }
   const check::Report found = check::judge(part, judged);
   report::Outcome outcome = report::compare(part, judged, found, expected);
@@ -162,8 +162,7 @@ int check_each_run(const CheckOptions& options) {
   if (options.keep_minutes) throw cli::UsageError("--keep", "no source grows");
   const check::Options judged = oracle_options(options);
   const report::KnownFailures expected = expectations(options);
-  const std::string known =
-      options.expect.empty() ? "" : cli::text_of_file(kCheckCommand, options.expect);
+  const std::string known = options.expect.empty() ? "" : cli::text_of_file(options.expect);
   const cli::EachJob job{kCheckCommand, command_of(options) + "\n" + known};
   keep_outputs_apart(options);
   if (!options.each.resume.empty()) cli::keep_apart("--out", options.out, {options.each.resume});

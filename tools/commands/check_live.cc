@@ -162,7 +162,7 @@ class Session {
     // A source that cannot be had costs no file.
     bool written = !kept_ || (failed && !kept_->is_started()) || kept_->finish();
     judge();
-    if (!refused_.empty()) cli::unreadable(kCheckCommand, refused_);
+    if (!refused_.empty()) cli::unreadable(refused_);
     report::Outcome outcome = report::compare(follow_.run(), judged_, follow_.report(), expected_);
     outcome.input_missing = failed;
     const bool again = !has_lines_ || !options_.write.path.empty();

@@ -137,7 +137,7 @@ std::vector<report::FrameRange> frame_ranges(const CheckOptions& options) {
 report::KnownFailures expectations(const CheckOptions& options) {
   const std::string& path = options.expect;
   if (path.empty()) return {};
-  const std::string text = cli::text_of_file(kCheckCommand, path);
+  const std::string text = cli::text_of_file(path);
   try {
     return report::parse_expectations(text, path);
   } catch (const std::runtime_error& mistake) {

@@ -172,7 +172,7 @@ Coverage measure(const CoverageOptions& options) {
   if (!options.protocol.empty()) {
     std::vector<std::string> traces;
     if (!options.cases.empty()) traces.push_back(options.cases);
-    use_protocol(kCoverage, options.protocol, {}, traces);
+    use_protocol(options.protocol, {}, traces);
     return read_protocol_cases(traces);
   }
   Coverage coverage;

@@ -39,7 +39,7 @@ constexpr const char* kDiffFooter =
     "3 no case could be compared, 64 usage, 66 a trace cannot be read.";
 
 void compare(DiffOptions options) {
-  use_protocol("diff", options.protocol, options.profiles, options.traces);
+  use_protocol(options.protocol, options.profiles, options.traces);
   if (options.targets.size() != 2) throw cli::UsageError("--target must be given twice");
   if (!options.profiles.empty() && options.profiles.size() != 2) {
     throw cli::UsageError("--profile must be given twice, once for each target");

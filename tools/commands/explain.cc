@@ -185,7 +185,7 @@ int explain_bytes(const ExplainOptions& options, const Protocol& protocol,
 
 int run_explain(const ExplainOptions& options) {
   std::vector<std::string> traces;
-  use_protocol("explain", options.folder, {}, traces);
+  use_protocol(options.folder, {}, traces);
   const bool other = !options.folder.empty();
   const Protocol& protocol = other ? *trace::protocol().wire : cli::chosen_protocol(options.input);
   suite::Cases cases;
@@ -195,7 +195,7 @@ int run_explain(const ExplainOptions& options) {
     try {
       cases = suite::Cases::of(traces);
     } catch (const std::runtime_error& error) {
-      cli::unreadable("explain", error.what());
+      cli::unreadable(error.what());
     }
     uses = uses_in(cases);
     rules = {uses, {}};

@@ -13,7 +13,6 @@
 #include "codec/containers/writer.h"
 #include "codec/generate/framer.h"
 #include "codec/generate/known_protocols.h"
-#include "codec/generate/routes.h"
 #include "codec/reflect/fault_text.h"
 #include "codec/reflect/suggest.h"
 #include "codec/text/json.h"
@@ -143,11 +142,6 @@ struct Message {
   bool of_link = false;
 };
 
-const reflect::RouteTable& routes_of(const reflect::Protocol& protocol) {
-  const reflect::RouteTable* read = cli::read_routes_of(protocol);
-  return read ? *read : *generate::routes_of(protocol);
-}
-
 void add_routes(const reflect::RouteTable& table, bool of_link, const Framer& framer,
                 std::vector<Message>& messages) {
   for (int i = 0; i < table.count; ++i) {
@@ -188,7 +182,7 @@ class Run {
   Run(const GenerateOptions& options, const reflect::Protocol& protocol)
       : options_(options),
         format_(format_of(options.format)),
-        frames_(protocol, routes_of(protocol), options.seed),
+        frames_(protocol, cli::routes_of(protocol), options.seed),
         acks_(tinyos::tables::kProtocol, generate::kLinkAckRoutes, options.seed ^ kAckSeed),
         framer_(format_, frames_.random()) {
     add_routes(frames_.routes(), false, framer_, messages_);
@@ -327,9 +321,9 @@ std::string share(const std::string& text) {
 }
 
 void check_outputs(const GenerateOptions& options) {
-  if (options.input.spec.ends_with(".ksy")) {
-    cli::keep_apart("--output", options.output, {options.input.spec});
-    cli::keep_apart("--expect", options.expect, {options.input.spec});
+  for (const std::string& file : cli::files_in(options.input.spec)) {
+    cli::keep_apart("--output", options.output, {file});
+    cli::keep_apart("--expect", options.expect, {file});
   }
   if (options.expect.empty()) return;
   if (options.format == "jsonl") {

@@ -16,6 +16,7 @@
 #include "tools/cli/command.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/input.h"
+#include "tools/cli/verdict.h"
 #include "tools/commands/stated.h"
 
 namespace rubric::tools {
@@ -46,8 +47,7 @@ void run_player_command(const cli::Command& app, const std::function<void()>& wo
     text::print(stderr, "rubric {}: {}\n", app.name(), error.what());
     cli::exit_with(cli::kExitBroken);
   } catch (const std::runtime_error& error) {
-    text::print(stderr, "rubric {}: {}\n", app.name(), error.what());
-    cli::exit_with(cli::kExitInput);
+    cli::unreadable(error.what());
   }
 }
 

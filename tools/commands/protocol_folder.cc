@@ -23,11 +23,11 @@ void add_protocol_option(cli::Command& command, std::string& folder) {
       .check(cli::given);
 }
 
-void use_protocol(const char* command, const std::string& folder,
-                  const std::vector<std::string>& profiles, std::vector<std::string>& traces) {
+void use_protocol(const std::string& folder, const std::vector<std::string>& profiles,
+                  std::vector<std::string>& traces) {
   if (folder.empty()) return;
   const std::string app = (fs::path(folder) / "app.yaml").string();
-  const std::string text = cli::text_of_file(command, app);
+  const std::string text = cli::text_of_file(app);
   cli::use_requirements_of((fs::path(folder) / "requirements.yaml").string());
   // A name is a shipped spec, name.ksy a file of the folder.
   const auto find_wire = [&](const std::string& name) -> const reflect::Protocol& {
@@ -48,7 +48,7 @@ void use_protocol(const char* command, const std::string& folder,
   } catch (const cli::Ending&) {  // A mistake in the wire spec, which was printed.
     throw;
   } catch (const std::runtime_error& mistake) {
-    cli::unreadable(command, mistake.what());
+    cli::unreadable(mistake.what());
   }
   for (const std::string& profile : profiles) {
     if (profile.empty() || trace::is_among(trace::protocol().profiles, profile)) continue;

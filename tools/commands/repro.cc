@@ -99,7 +99,7 @@ Repro repro_network(Bytes bytes, const ReproOptions& options) {
 
 void run_repro(const ReproOptions& options) {
   cli::keep_apart("--out", options.out, {options.input});
-  const std::string text = cli::text_of_file("repro", options.input);
+  const std::string text = cli::text_of_file(options.input);
   const Bytes bytes(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
   const Repro repro = options.fuzzer == "network" ? repro_network(bytes, options)
                       : options.fuzzer == "nodes" ? repro_nodes(bytes)

@@ -101,7 +101,7 @@ std::vector<shrink::Player> references(
 
 void shrink_it(const ShrinkOptions& options) {
   std::vector<std::string> traces = {options.trace};
-  use_protocol("shrink", options.protocol, {options.profile}, traces);
+  use_protocol(options.protocol, {options.profile}, traces);
   const suite::Cases cases = suite::Cases::of(traces);
   if (!options.case_name.empty() && !cases.find(options.case_name)) {
     throw cli::UsageError(options.trace + " has no case " + options.case_name);

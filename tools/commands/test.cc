@@ -103,13 +103,13 @@ suite::Cases read_cases(const TestOptions& options) {
   try {
     return suite::Cases::of(options.traces);
   } catch (const std::runtime_error& error) {
-    cli::unreadable(kCommand, error.what());
+    cli::unreadable(error.what());
   }
 }
 
 report::KnownFailures read_expected(const TestOptions& options) {
   if (options.expect.empty()) return {};
-  const std::string text = cli::text_of_file(kCommand, options.expect);
+  const std::string text = cli::text_of_file(options.expect);
   try {
     return suite::parse_expected(text, options.expect);
   } catch (const std::runtime_error& mistake) {
@@ -119,11 +119,11 @@ report::KnownFailures read_expected(const TestOptions& options) {
 
 std::optional<suite::EarlierRun> read_earlier(const TestOptions& options) {
   if (options.compare.empty()) return std::nullopt;
-  const std::string text = cli::text_of_file(kCommand, options.compare);
+  const std::string text = cli::text_of_file(options.compare);
   try {
     return suite::read_json_report(text);
   } catch (const std::runtime_error& mistake) {
-    cli::unreadable(kCommand, fmt::format("{}: {}", options.compare, mistake.what()));
+    cli::unreadable(fmt::format("{}: {}", options.compare, mistake.what()));
   }
 }
 
@@ -301,7 +301,7 @@ bool write_formats(const TestOptions& options, const suite::SuiteRun& run,
 }
 
 int run_test(TestOptions options) {
-  use_protocol(kCommand, options.protocol, {options.profile}, options.traces);
+  use_protocol(options.protocol, {options.profile}, options.traces);
   const suite::Cases cases = read_cases(options);
   suite::Plan plan;
   plan.expected = read_expected(options);

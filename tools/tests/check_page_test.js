@@ -1,6 +1,7 @@
 'use strict';
-// The page of `rubric check --report` in a real Chromium: failures first, usable by everybody, and
-// no wider than a telephone. Usage: node check_page_test.js RUBRIC; run in the project's folder.
+// The pages of `rubric check --report` and `rubric test --report` in a real Chromium: failures
+// first, usable by everybody, and no wider than a telephone. Usage: node check_page_test.js RUBRIC;
+// run in the project's folder.
 const assert = require('node:assert');
 const { spawnSync } = require('node:child_process');
 const fs = require('node:fs');
@@ -12,6 +13,25 @@ const { accessible, launch, open } =
 
 const kCapture = 'spec/captures/firmware/h4_stale_bytes.pcapng';
 const kTelephone = { width: 390, height: 800 };
+
+// The cases of one implementation, with reasons that are long.
+async function casesOfOne(browser, report) {
+  const done = spawnSync(process.argv[2], ['test', '--target', 'machine:answers_members', '--cases',
+    'j*', '--report', report]);
+  assert.strictEqual(done.status, 1, String(done.stderr));
+  const page = await open(browser, 'light', kTelephone);
+  page.home = url.pathToFileURL(path.join(report, 'index.html')).href;
+  await page.goto(page.home);
+  const verdicts = await page.locator('#matrix tbody .verdict').allTextContents();
+  const failing = verdicts.lastIndexOf('fail') + 1;
+  assert.ok(failing > 0 && failing < verdicts.length);
+  assert.deepStrictEqual([...new Set(verdicts.slice(0, failing))], ['fail']);
+  const hidden = await page.locator('.scroll').first().evaluate((one) =>
+    one.scrollWidth - one.clientWidth);
+  assert.strictEqual(hidden, 0, `${hidden} pixels of the table are out of sight`);
+  await accessible(page, 'cases');
+  await page.clean();
+}
 
 async function main() {
   const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'check-page-'));
@@ -37,6 +57,7 @@ async function main() {
       assert.ok(wide <= kTelephone.width, `the page is ${wide} wide`);
       await page.clean();
     }
+    await casesOfOne(browser, path.join(folder, 'cases'));
   } finally {
     await browser.close();
     fs.rmSync(folder, { recursive: true });

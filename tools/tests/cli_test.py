@@ -101,6 +101,26 @@ class ExitCodes(unittest.TestCase):
         self.assertEqual(done.returncode, OUTPUT)
         self.assertIn("cannot write", done.stderr.decode())
 
+    def test_the_same_mistake_gives_the_same_message(self):
+        there = "spec/captures/firmware/a_join_data.pcapng"
+        for words in (("decode", "@"), ("stats", "@"), ("encode", "@"),
+                      ("convert", "@", "-o", os.devnull, "--format", "hex"),
+                      ("check", "@"), ("check", there, "--expect", "@"),
+                      ("test", "--target", "machine", "@"), ("chart", "@"),
+                      ("test", "--target", "machine", "--expect", "@"),
+                      ("shrink", "@", "--target", "machine"), ("repro", "machine", "@")):
+            done = run(*(word.replace("@", "absent.rtr") for word in words))
+            self.assertEqual((done.returncode, done.stderr),
+                             (INPUT, b"rubric: absent.rtr: No such file or directory\n"), words)
+        for words in (("decode", there, "--write", "@", "--count", "1"),
+                      ("convert", there, "-o", "@", "--format", "pcapng"),
+                      ("check", there, "--out", "@"),
+                      ("simulate", "--seconds", "1", "--out-rtr", "@")):
+            done = run(*(word.replace("@", "/dev/full") for word in words))
+            self.assertEqual((done.returncode, done.stderr.splitlines()[-1]),
+                             (OUTPUT, b"rubric: cannot write /dev/full: No space left on device"),
+                             words)
+
     def test_help_is_0(self):
         self.assertEqual(run("--help").returncode, CLEAN)
         self.assertIn("--filter", run("decode", "--help").stdout.decode())

@@ -60,7 +60,7 @@ class Protocol(testing.Folder):
         self.assertIn("probes/cases/more.rtr: No such file or directory", err)
         (self.folder / "endless.rtr").symlink_to("/dev/zero")
         code, _, err = self.rubric("test", "--protocol", "probes", "--list", "endless.rtr")
-        self.assertEqual((code, err), (66, "rubric test: endless.rtr: File too large\n"))
+        self.assertEqual((code, err), (66, "rubric: endless.rtr: File too large\n"))
 
     def test_decode_reads_its_frames(self):
         self.new()

@@ -155,11 +155,12 @@ class OtherSpecs(unittest.TestCase):
         self.assertEqual(self.said(f"{BLINK}\n{BLINK}\n", "--spec", "rubicon"), hint)
         self.assertEqual(self.said(BLINK, "--spec", "rubicon", command="stats"), hint)
         self.assertEqual(rubric("explain", *BLINK.split()).stderr, hint)
-        self.assertEqual(self.said(BLINK, "--spec", "ctp"), hint.replace("also ", ""))
+        self.assertEqual(self.said(BLINK, "--spec", "ctp"),
+                         "rubric: AM 6 fits blink_to_radio: --spec ctp,blink_to_radio\n")
 
     def test_beacons_and_commands_are_named_once(self):
         beacon = "00 80 07 AA 1A 01 00 FF CF 00 00\n"
-        hint = "rubric: a beacon fits ieee802154: --spec ieee802154\n"
+        hint = "rubric: a beacon fits ieee802154: --spec rubicon,ieee802154\n"
         self.assertEqual(self.said(2 * beacon, "--input-format", "hex-radio"), hint)
         self.assertEqual(self.said("08 80 07 AA 1A 01 00 FF CF 00 00",  # Secured.
                                    "--input-format", "hex-radio"), "")
@@ -169,6 +170,107 @@ class OtherSpecs(unittest.TestCase):
         self.assertEqual(self.said(BLINK, "--spec", "none"), "")
         self.assertEqual(self.said(BEACON), "")
         self.assertEqual(self.said(BLINK.replace("06", "FA")), "")
+
+
+class Several(Folder):
+    """One capture, in which motes speak more than one protocol."""
+
+    CTP = "00 FF FF 00 02 0A 22 70 01 05 80 00 01 00 0A 00 03 FF"
+    OWN = "00 FF FF 00 00 03 22 2A 00 05 50"
+
+    def messages(self, spec, *lines, more=(), hint=""):
+        done = rubric("decode", "--spec", spec, "--format", "jsonl", *more,
+                      stdin="".join(line + "\n" for line in lines))
+        self.assertEqual((done.returncode, done.stderr), (0, hint))
+        return [json.loads(line)["message"] for line in done.stdout.splitlines()]
+
+    def lamp(self):
+        file = self.folder / "lamp.ksy"
+        file.write_text("meta: {id: lamp, endian: be}\ntypes:\n  lamp_state:\n    -am-type: 42\n"
+                        "    seq: [{id: lamp, type: u2}, {id: level, type: u1}]\n")
+        return str(file)
+
+    def test_each_message_by_the_first_that_has_its_type(self):
+        lines = (self.CTP, BLINK, self.OWN)
+        lamp = self.lamp()
+        mine = self.folder / "mine.ksy"
+        mine.write_text("meta: {id: mine, endian: be}\ntypes:\n  mine:\n    -am-type: 0x70\n"
+                        "    seq: [{id: all, size-eos: true}]\n")
+        self.assertEqual(self.messages(f"rubicon,blink_to_radio,ctp,{lamp},{mine}", *lines),
+                         ["ctp_routing", "blink_to_radio_msg", "lamp_state"])
+        self.assertEqual(self.messages(f"{mine},{lamp},ctp,blink_to_radio", *lines),
+                         ["mine", "blink_to_radio_msg", "lamp_state"])
+        self.assertEqual(
+            self.messages(f"rubicon,{lamp}", *lines,
+                          hint="rubric: AM 112 fits ctp: "
+                          f"--spec rubicon,{lamp},ctp\nrubric: AM 6 also fits blink_to_radio: "
+                          "--spec blink_to_radio\n")[1:], ["rssi_beacon", "lamp_state"])
+        self.assertEqual(self.messages("ctp", self.CTP, self.OWN, more=("--spec", lamp)),
+                         ["ctp_routing", "lamp_state"])
+
+    def test_a_capture_of_one_reads_the_same(self):
+        for capture in sorted(pathlib.Path("spec/captures/firmware").glob("[gh]*.pcapng")):
+            one, both = (rubric("decode", str(capture), "--format", "jsonl", "--spec", spec)
+                         for spec in ("rubicon", "rubicon,ctp,printf"))
+            self.assertEqual((both.returncode, both.stdout), (one.returncode, one.stdout))
+
+    def test_radio_frames_and_beacons(self):
+        beacon = "00 80 07 AA 1A 01 00 FF CF 00 00"
+        radio = "41 88 01 22 00 FF FF 02 00 3F 70 01 05 80 00 01 00 0A 00 03 FF"
+        self.assertEqual(self.messages("rubicon,ieee802154,ctp", beacon, radio,
+                                       more=("--input-format", "hex-radio")),
+                         ["beacon", "ctp_routing"])
+
+    def test_the_other_commands(self):
+        both = "oscilloscope,ctp"
+        listed = rubric("messages", "--spec", both).stdout
+        for name in ("oscilloscope_msg", "ctp_data"):
+            self.assertRegex(listed, name)
+        said = rubric("stats", "--spec", both, stdin=self.CTP).stdout
+        self.assertIn("ctp_routing", said)
+        explained = rubric("explain", "--spec", both, *self.CTP.split())
+        self.assertIn("ctp_routing", explained.stdout)
+        frame = rubric("decode", "--spec", both, "--format", "jsonl", stdin=self.CTP).stdout
+        record = json.loads(frame)
+        del record["raw"]
+        made = rubric("encode", "--spec", both, "--format", "hex", stdin=json.dumps(record))
+        self.assertEqual(made.stdout.split(), self.CTP.split(), made.stderr)
+
+    def test_generated_frames_decode_as_expected(self):
+        for both in ("rubicon,blink_to_radio,ctp", "blink_to_radio,rubicon", "ctp,printf"):
+            made = rubric("generate", "--spec", both, "--count", "150", "--valid", "0.5").stdout
+            made = [json.loads(x) for x in made.splitlines()]
+            serial = [x for x in made if x["carrier"] == "serial"]
+            done = rubric("decode", "--spec", both, "--format", "jsonl",
+                          stdin="".join(x["raw"] + "\n" for x in serial)).stdout
+            self.assertGreater(len(serial), 30)
+            for one, frame in zip(serial, map(json.loads, done.splitlines()), strict=True):
+                with self.subTest(both=both, **one):
+                    self.assertEqual(one["error"] is None, frame["error"] is None)
+                    if one["verdict"] == "valid":
+                        self.assertEqual(one["path"], frame["path"])
+
+    def test_what_is_none(self):
+        for spec, says in [("ctp,rubico", "unknown protocol 'rubico' (did you mean 'rubicon'?)"),
+                           ("ctp,spec", "'spec' is a folder")]:
+            done = rubric("decode", "--spec", spec, stdin=BLINK)
+            self.assertEqual((done.returncode, done.stdout), (64, ""))
+            self.assertIn(says, done.stderr)
+        odd = self.folder / "odd.ksy"
+        odd.write_text("meta: {id: odd, endian: be}\n-carrier: serial\nseq:\n"
+                       "  - {id: head, type: u1}\n  - {id: kind, type: u1}\n"
+                       "  - {id: body, size-eos: true, type: {switch-on: kind, cases: {1: a}}}\n"
+                       "types: {a: {seq: [{id: a, type: u1}]}}\n")
+        done = rubric("decode", "--spec", f"ctp,{odd}", stdin=BLINK)
+        self.assertEqual(done.returncode, 64)
+        self.assertIn("odd has the messages of serial frames, or the number that chooses one, in "
+                      "another place than ctp", done.stderr)
+
+    def test_a_name_with_a_comma_is_a_file_if_there_is_one(self):
+        file = self.folder / "my,own.ksy"
+        file.write_text(PLAIN)
+        done = rubric("decode", "--spec", str(file), "--as", "pair", stdin="01 00 02\n")
+        self.assertIn("a=1 b=2", done.stdout)
 
 
 class File(Folder):

@@ -434,13 +434,14 @@ void MoteJoins::refuse_ack(std::uint16_t mote, const Observation& seen, const Ac
 void MoteJoins::net_msg(std::uint16_t mote, const Observation& seen, const Net& net) {
   MoteWatch& watch = motes_[mote];
   std::vector<MoteHypothesis>& set = watch.set;
+  const std::int64_t now = seen.place.time_us;
   if (set.size() == 1 && set[0].join.phase == Phase::kMember && set[0].sent &&
       set[0].join.address == net.src) {
+    set[0].sent_us = now;
     context_.findings.kept("J11-SEND"_rule);
     context_.findings.kept("N1-SRC"_rule);
     return;
   }
-  const std::int64_t now = seen.place.time_us;
   // Of two motes with one id in two islands it may be the other.
   const bool only = context_.next_of_am[context_.mote_of_am[context_.device(mote).am]] == kNobody;
   std::vector<MoteHypothesis> before = set;
@@ -462,6 +463,7 @@ void MoteJoins::net_msg(std::uint16_t mote, const Observation& seen, const Net& 
     h.join.address = net.src;
     h.acks_seen = std::max<std::uint8_t>(h.acks_seen, 1);
     h.sent = true;
+    h.sent_us = now;
     if (!was_unknown) continue;
     h.join.seq_num = 0;
     h.accepted_us = now;  // At the latest.
@@ -483,7 +485,9 @@ void MoteJoins::net_msg(std::uint16_t mote, const Observation& seen, const Net& 
     said.text = "A net_msg from " + text_of(net.src) + " before the mote has joined.";
     said.expected = "No net_msg before ack_join.";
   }
-  const std::int64_t since = member ? h.accepted_us : context_.device(mote).first_us;
+  // A member may have another address by a join since it last showed this one.
+  const std::int64_t since =
+      member ? std::max(h.accepted_us, h.sent_us) : context_.device(mote).first_us;
   const bool ever = h.join.phase == Phase::kOutside && h.first_request_us == 0;
   Severity severity = context_.without(mote, since, now);
   if (ever) severity = context_.without_ever(mote, now);
@@ -496,7 +500,7 @@ void MoteJoins::net_msg(std::uint16_t mote, const Observation& seen, const Net& 
   next.join.address = net.src;
   next.acks_seen = 1;
   next.sent = true;
-  next.accepted_us = now;
+  next.accepted_us = next.sent_us = now;
   set.assign(1, next);
   if (member) set.push_back(h_before);  // Perhaps only this message was wrong.
 }

@@ -71,6 +71,7 @@ struct MoteHypothesis {
   bool void_offer = false;       ///< It accepted what was not offered to it (J4-ADDRESS).
   bool told = false;             ///< Its application got joined(SUCCESS).
   bool sent = false;             ///< It sent a net_msg, so in its own view it is a member.
+  std::int64_t sent_us = 0;      ///< The last one with its address.
 };
 
 /// A mote, through its lives.

@@ -85,7 +85,8 @@ struct Sum {
   std::uint64_t fails = 0;
   std::uint64_t equal = 0;
   std::uint64_t missing = 0;  // Not found, or found as something else.
-  std::uint64_t other = 0;    // Found in the followed run alone.
+  std::uint64_t missing_fails = 0;
+  std::uint64_t other = 0;  // Found in the followed run alone.
   std::uint64_t false_fails = 0;
   std::uint64_t let_go = 0;
 };
@@ -135,6 +136,8 @@ void compare(const std::string& what, const std::string& capture, double spoilt,
   }
   for (const auto& [name, count] : names) {
     sum.missing += static_cast<std::uint64_t>(count);
+    const bool fails = std::get<Severity>(name) == Severity::kFail;
+    if (fails) sum.missing_fails += static_cast<std::uint64_t>(count);
     if (count > 0 && std::getenv("RUBRIC_VERBOSE") != nullptr) {
       std::printf("  %s: only whole: %s\n", what.c_str(), text_of(name).c_str());
     }
@@ -144,12 +147,13 @@ void compare(const std::string& what, const std::string& capture, double spoilt,
 void print(const char* what, const Sum& sum) {
   std::printf(
       "%s: %llu runs of %llu frames, of which %llu were let go; %llu findings (%llu failures), "
-      "%llu equal, %llu missing, %llu others, %llu failures among these\n",
+      "%llu equal, %llu missing (%llu failures), %llu others, %llu failures among these\n",
       what, static_cast<unsigned long long>(sum.runs), static_cast<unsigned long long>(sum.frames),
       static_cast<unsigned long long>(sum.let_go), static_cast<unsigned long long>(sum.findings),
       static_cast<unsigned long long>(sum.fails), static_cast<unsigned long long>(sum.equal),
-      static_cast<unsigned long long>(sum.missing), static_cast<unsigned long long>(sum.other),
-      static_cast<unsigned long long>(sum.false_fails));
+      static_cast<unsigned long long>(sum.missing),
+      static_cast<unsigned long long>(sum.missing_fails),
+      static_cast<unsigned long long>(sum.other), static_cast<unsigned long long>(sum.false_fails));
 }
 
 std::string simulated(const simulate::ScenarioOptions& how, std::int64_t length_us) {
@@ -181,6 +185,8 @@ TEST(Follow, SimulatedRuns) {
   EXPECT_EQ(spoilt.false_fails, 0U);
   EXPECT_GT(honest.let_go * 2, honest.frames);
   EXPECT_GT(spoilt.fails, 100U);
+  EXPECT_GE(spoilt.equal * 100, spoilt.findings * 99);
+  EXPECT_LE(spoilt.missing_fails * 50, spoilt.fails);
 }
 
 TEST(Follow, LawfulTraffic) {

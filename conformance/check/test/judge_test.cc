@@ -426,6 +426,26 @@ TEST(Judge, AStandingClockPassesWhenDeployed) {
   EXPECT_EQ(report.verdict, Verdict::kPass);
 }
 
+// A mote may have joined anew while its frames were missed, but not since it last showed its
+// address.
+TEST(Judge, AMessageFromAnotherAddressIsJudgedSinceTheLastFromItsOwn) {
+  for (const int own : {0, 2}) {
+    Script script = two_motes();
+    script.dsn[2] += 2;  // Frames of it were missed.
+    std::uint16_t number = 5;
+    for (int i = 0; i < own; ++i) script.net(400 + 10 * i, 2, 1, update(2, number++));
+    NetFields net = update(2, number++);
+    net.src = {11, 9};
+    script.net(430, 2, 1, net).net(440, 2, 1, update(2, number));
+    const Report report = judge(script.run, {});
+    const auto found =
+        std::find_if(report.findings.begin(), report.findings.end(),
+                     [](const Finding& finding) { return finding.requirement == "N1-SRC"_rule; });
+    ASSERT_NE(found, report.findings.end());
+    EXPECT_EQ(found->severity, own == 0 ? Severity::kInconclusive : Severity::kFail);
+  }
+}
+
 // More senders than are followed: their frames blame nobody, and the report says so.
 TEST(Judge, SaysWhoIsNotFollowed) {
   constexpr std::uint16_t kFollowed = 4096;

@@ -100,6 +100,20 @@ TEST(ReportFolder, WritesThroughNoLink) {
   EXPECT_EQ(files_in(folder.path() / "outside"), std::set<std::string>{"keep.txt"});
 }
 
+// It is named by who runs the test, as `latest` may lead to the run of today.
+TEST(ReportFolder, TheFolderItselfMayBeALink) {
+  Folder folder;
+  const fs::path path = folder.path() / "report";
+  fs::create_directories(path);
+  fs::create_directory_symlink(path, folder.path() / "latest");
+  report(SuiteRun(), folder.path() / "latest");
+  EXPECT_TRUE(fs::is_symlink(folder.path() / "latest"));
+  EXPECT_TRUE(fs::exists(path / "index.html"));
+  fs::create_directory_symlink(folder.path() / "absent", folder.path() / "nowhere");
+  EXPECT_THROW(ReportFolder(folder.path() / "nowhere"), std::system_error);
+  EXPECT_FALSE(fs::exists(folder.path() / "absent"));
+}
+
 TEST(ReportFolder, KeepsTheOldReportUntilTheNewOneIsWhole) {
   Folder folder;
   const fs::path path = folder.path() / "report";

@@ -102,7 +102,7 @@ bool Keeper::finish() {
     const int error = log_->finish();
     if (log_error_ == 0) log_error_ = error;
     if (log_error_ != 0) {
-      text::print(stderr, "rubric: {}: {}\n", log_path_, std::strerror(log_error_));
+      text::print(stderr, "rubric: cannot write {}: {}\n", log_path_, std::strerror(log_error_));
     }
   }
   return good && log_error_ == 0;

@@ -6,6 +6,11 @@ const main = document.getElementById('main');
 // In the order in which readers want to see them.
 const kVerdicts = ['fail', 'error', 'weak', 'inconclusive', 'skip', 'pass'];
 
+// So cases are in this order, too, each by its gravest run; what is as expected comes after.
+const gravity = (one) => Math.min(...one.runs.map((run) =>
+  kVerdicts.indexOf(run.verdict) + (run.unexpected ? 0 : kVerdicts.length)));
+data.cases.sort((a, b) => gravity(a) - gravity(b));
+
 function add(element, children) {
   for (const child of children.flat(Infinity)) {
     if (child === null || child === undefined || child === false || child === '') continue;

@@ -36,12 +36,23 @@ async function filters(page, go) {
   assert.ok(both.every((name) => /base_station|n11/.test(name)), both.join(' '));
 }
 
+async function order(page, go) {
+  await go('#/cases');
+  const verdicts = await page.locator('#matrix tbody tr').evaluateAll((all) => all.map((row) => {
+    const its = [...row.querySelectorAll('.verdict')].map((one) => one.textContent);
+    return its.every((one) => one === 'pass') ? 'pass' : its.find((one) => one !== 'pass');
+  }));
+  const begin = verdicts.indexOf('pass');
+  assert.ok(begin > 0 && verdicts[0] === 'fail', verdicts.slice(0, 5).join(' '));
+  assert.deepStrictEqual([...new Set(verdicts.slice(begin))], ['pass']);
+}
+
 async function search(page, go) {
   await go('#/cases');
   await page.getByLabel('Search').fill('J4-SEQ  J5-accept');
   assert.deepStrictEqual(await texts(page, '#matrix tbody th'),
-    ['edges_j.ack_join_is_no_reply', 'j4.wrong_seq', 'edges_j.ack_join_is_no_reply.again',
-      'j4.wrong_seq.again']);
+    ['j4.wrong_seq', 'j4.wrong_seq.again', 'edges_j.ack_join_is_no_reply',
+      'edges_j.ack_join_is_no_reply.again']);
   await page.getByLabel('Search').fill('release 1.0 does');  // Words of a comment.
   assert.ok((await texts(page, '#matrix tbody th')).includes('j4.wrong_seq'));
   await page.getByLabel('Search').fill('there is no such case');
@@ -268,7 +279,8 @@ async function narrow(page, go) {
 }
 
 const kTelephone = { shape: { width: 390, height: 800 } };
-const checks = [['filters', filters], ['search', search], ['an earlier run', compared],
+const checks = [['filters', filters], ['failures first', order], ['search', search],
+  ['an earlier run', compared],
   ['a failing case and its chart', failing], ['bytes by field', bytes], ['files', files],
   ['rules', rules], ['the figures of the paper', figures], ['keyboard', keyboard],
   ['light and dark', themes], ['markup is text', harmless], ['places that are not', nowhere],
