@@ -28,7 +28,20 @@ bool handed_down(const Moment& moment, const Transmit& frame) {
          heard->link == Link::kPeis;
 }
 
+// Returns whether a sink that has members does not list this devid.
+bool is_not_listed(const Moment& moment, std::uint16_t devid) {
+  const auto& members = moment.state.sink.members;
+  return !members.empty() && std::none_of(members.begin(), members.end(), [=](const auto& member) {
+    return member.devid == devid;
+  });
+}
+
 void add_sink_up(Mutants& out) {
+  add(out, "sink_hears_members_only", "A sink that has members hears no net_msg of other motes.",
+      {"N6-DELIVER"_rule, "N6-FORWARD"_rule, "N6-ROUTE"_rule},
+      hear_only([](const Moment& moment, const Frame& frame) {
+        return !from_radio(moment, frame) || !is_not_listed(moment, frame.src);
+      }));
   add(out, "sink_hears_no_broadcast", "A sink does not deliver a broadcast of its island.",
       {"N6-DELIVER"_rule}, hear_only([](const Moment& moment, const Frame& frame) {
         return !from_radio(moment, frame) ||
@@ -196,6 +209,11 @@ void add_base_station(Mutants& out) {
 }
 
 void add_island_id(Mutants& out) {
+  add(out, "no_island_0", "SET_ISLAND_ID with 0 changes nothing.", {"N9-SET"_rule},
+      hear_only([](const Moment&, const Frame& frame) {
+        return frame.type != am::kConfig || frame.payload.size() < config::kValue.kEnd ||
+               get(frame, config::kValue) != 0;
+      }));
   add(out, "local_island_not_replaced", "SET_ISLAND_ID changes nothing.", {"N9-SET"_rule},
       hear_only([](const Moment&, const Frame& frame) { return frame.type != am::kConfig; }));
   add(out, "island_id_swapped", "SET_ISLAND_ID is read in the wrong byte order.", {"N9-SET"_rule},
