@@ -225,6 +225,17 @@ void cut_on_serial(Moment&, Transmit& frame) {
   frame.size_bytes = static_cast<std::uint8_t>(12 + frame.payload[net::kNbytes]);
 }
 
+// Says something of its own by radio whenever anything happens.
+void beacons(Moment& moment) {
+  const auto& radio = moment.state.radio;
+  const bool idle = radio.on && !radio.sending && !radio.taken && !moment.state.off &&
+                    moment.actions.transmits().empty();
+  const bool ended = std::holds_alternative<machine::SendDone>(moment.event);
+  if (!idle || ended || moment.is(Role::kBaseStation)) return;
+  moment.state.radio.sending = true;
+  moment.send(Link::kRadio, 200, machine::kAmBroadcast, ReqId::kNone).size_bytes = 4;
+}
+
 void add_messages(Variants& out) {
   out.push_back({"acks_with_a_code", "Acks are learning_notifications, as in release 1.0 (108).",
                  with_profile(&machine::Profile::short_acks, false)});
@@ -252,15 +263,8 @@ void add_messages(Variants& out) {
                  sent_field(is_synaptic, net::kAppId, 6)});
   out.push_back({"told_first", "In a step, events for the application come before frames.",
                  always(other_order)});
-  out.push_back({"own_frames_besides", "A mote beacons with a type of its own now and then.",
-                 after_step([](Moment& moment) {
-                   const bool idle = moment.actions.transmits().empty() && is_member(moment) &&
-                                     !moment.state.radio.sending;
-                   if (!idle || moment.called<machine::GetClock>() == nullptr) return;
-                   moment.state.radio.sending = true;
-                   Transmit& beacon = moment.send(Link::kRadio, 200, 0xFFFF, ReqId::kNone);
-                   beacon.size_bytes = 4;
-                 })});
+  out.push_back({"own_frames_besides", "A node beacons with a type of its own all the time (124).",
+                 after_step(beacons)});
 }
 
 // The machine keeps what its configuration states.
@@ -284,6 +288,52 @@ StepMaker late(Ticks ticks, Waits waits) {
 
 StepMaker late(Ticks ticks) {
   return late(ticks, [](const Frame&) { return true; });
+}
+
+struct LateValues {
+  Ticks due = 0;
+  machine::ChannelId id = 0;
+  decltype(machine::Channel::value_bits) bits;
+};
+
+// Handles the data of channels 440 ticks after they came.
+void values_late(Moment& moment, std::vector<LateValues>& waiting) {
+  auto& inputs = moment.state.synaptic.in;
+  while (!waiting.empty() && waiting.front().due <= moment.now) {
+    for (machine::Channel& input : inputs) {
+      if (input.id != waiting.front().id || !input.started) continue;
+      input.value_bits = waiting.front().bits;
+      input.fresh = true;
+    }
+    waiting.erase(waiting.begin());
+  }
+  const auto before = inputs;
+  moment.honest();
+  if (moment.heard() == nullptr) return;
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    if (inputs[i] == before[i]) continue;
+    waiting.push_back({moment.now + 440, inputs[i].id, inputs[i].value_bits});
+  }
+  inputs = before;
+}
+
+struct Bursts {
+  Ticks last = 0;
+  bool waits = false;
+};
+
+// Needs the channel for as long as stated for each frame of a burst, and not at all for the next.
+void waits_every_second_time(Moment& moment, Bursts& bursts) {
+  constexpr Ticks kPause = 200;
+  moment.honest();
+  moment.rewrite([&](const Action& action) {
+    const bool radio =
+        action.what == Action::What::kTransmit && moment.sent(action).link == Link::kRadio;
+    if (!radio) return moment.keep(action);
+    if (moment.now > bursts.last + kPause) bursts.waits = !bursts.waits;
+    bursts.last = moment.now;
+    return bursts.waits ? moment.hold(action, 30) : moment.keep(action);
+  });
 }
 
 // Two wrappers, the frames of the first held back by the second.
@@ -371,6 +421,11 @@ std::vector<LegalVariant> stated_variants() {
                  late(90),
                  true,
                  {{ParameterId::kResponse, 100}}});
+  out.push_back({"values_late",
+                 "Synaptic data count 440 ticks after they came (125).",
+                 remembering<std::vector<LateValues>>(values_late),
+                 false,
+                 {{ParameterId::kResponse, 450}}});
   out.push_back({"synaptic_period_1000",
                  "A synaptic clock of a second (133).",
                  always(as_stated),
@@ -391,6 +446,12 @@ std::vector<LegalVariant> stated_variants() {
                  backing_off(1, 10),
                  false,
                  {{ParameterId::kChannelAccess, 30}}});
+  out.push_back(
+      {"backs_off_as_long_as_stated",
+       "Each frame of a burst needs 30 ticks for the channel, those of the next none (128).",
+       remembering<Bursts>(waits_every_second_time),
+       false,
+       {{ParameterId::kChannelAccess, 30}}});
   out.push_back({"all_stated",
                  "Everything at once (110, 121, 125, 128, 133).",
                  late_and_backing_off(330, 20),

@@ -250,7 +250,40 @@ void renumber(Moment& moment, std::uint16_t number) {
   });
 }
 
+// Keeps the lower byte of a number.
+std::uint16_t in_8_bits(std::uint16_t number) {
+  return number == machine::kNoSeq ? number : static_cast<std::uint16_t>(0x300 | (number & 0xFF));
+}
+
+void renumber_in_8_bits(Moment& moment) {
+  moment.honest();
+  moment.rewrite([&](const Action& action) {
+    if (action.what == Action::What::kNotify) {
+      Notice notice = moment.notice_of(action);
+      if (auto* const result = std::get_if<SendResult>(&notice)) {
+        result->seq_num = in_8_bits(result->seq_num);
+      }
+      return moment.keep(action, notice);
+    }
+    if (action.what != Action::What::kTransmit) return moment.keep(action);
+    Transmit frame = moment.sent(action);
+    const bool mine = is_net(frame) && get(frame, net::kSrcDevid) == own(moment).devid;
+    if (mine) put(frame, net::kSeqNum, in_8_bits(get(frame, net::kSeqNum)));
+    moment.keep(action, frame);
+  });
+}
+
 void add_numbers(Mutants& out) {
+  add(out, "numbers_of_8_bits", "Numbers come again after 256.", {"N12-REUSE"_rule},
+      always(renumber_in_8_bits));
+  add(out, "sizes_of_8_bits", "send counts the bytes of a body in 8 bits.", {"N1-SIZE"_rule},
+      always([](Moment& moment) {
+        const Send* const send = moment.called<Send>();
+        if (send == nullptr) return moment.honest();
+        Send other = *send;
+        other.data = Bytes(send->data.data(), send->data.size() & 0xFF);
+        moment.honest(machine::Called{other});
+      }));
   add(out, "awaited_number_reused", "Every message has number 7.", {"N12-REUSE"_rule},
       always([](Moment& moment) { renumber(moment, 7); }));
   add(out, "number_for_each_destination",

@@ -28,7 +28,20 @@ bool handed_down(const Moment& moment, const Transmit& frame) {
          heard->link == Link::kPeis;
 }
 
+// Returns whether a sink that has members does not list this devid.
+bool is_not_listed(const Moment& moment, std::uint16_t devid) {
+  const auto& members = moment.state.sink.members;
+  return !members.empty() && std::none_of(members.begin(), members.end(), [=](const auto& member) {
+    return member.devid == devid;
+  });
+}
+
 void add_sink_up(Mutants& out) {
+  add(out, "sink_hears_members_only", "A sink that has members hears no net_msg of other motes.",
+      {"N6-DELIVER"_rule, "N6-FORWARD"_rule, "N6-ROUTE"_rule},
+      hear_only([](const Moment& moment, const Frame& frame) {
+        return !from_radio(moment, frame) || !is_not_listed(moment, frame.src);
+      }));
   add(out, "sink_hears_no_broadcast", "A sink does not deliver a broadcast of its island.",
       {"N6-DELIVER"_rule}, hear_only([](const Moment& moment, const Frame& frame) {
         return !from_radio(moment, frame) ||

@@ -108,6 +108,17 @@ void add_join_ends(Mutants& out) {
           send_request(moment);
         }
       }));
+  add(out, "waiting_request_leaves", "A request that waits when a reply comes leaves all the same.",
+      {"J5-STOP"_rule}, always([](Moment& moment) {
+        auto& queue = moment.state.radio.out;
+        const bool waits = !queue.empty() && queue.front().type == am::kJoin;
+        const machine::Buffered request = waits ? queue.front() : machine::Buffered{};
+        moment.honest();
+        if (!waits || !is_member(moment) || queue.full() || moment.heard() == nullptr) return;
+        queue.push();
+        for (std::size_t i = queue.size() - 1; i > 0; --i) queue[i] = queue[i - 1];
+        queue.front() = request;
+      }));
   add(out, "fail_twice", "joined(FAIL) is signalled twice.", {"J5-ONCE"_rule},
       on_told_of<Joined>(
           [](Moment&, Joined& joined) { return joined.success ? Fate::kKeep : Fate::kTwice; }));
@@ -275,6 +286,12 @@ void add_acceptance(Mutants& out) {
         if (moment.heard(am::kJoinReply) != nullptr) {
           moment.state.clock_offset_ms = offset;
         }
+      }));
+  add(out, "clock_in_32_bits", "A mote's clock counts microseconds in 32 bits.", {"J4-CLOCK"_rule},
+      edit_told<machine::Clock>([](Moment& moment, machine::Clock& clock) {
+        constexpr std::uint32_t kRoundMs = 4'294'967;  // 2^32 us.
+        const std::uint32_t start = moment.state.clock_offset_ms;
+        clock.ms = start + (clock.ms - start) % kRoundMs;
       }));
   add(out, "clock_stands", "A mote's clock stays at cur_time.", {"J4-CLOCK"_rule},
       on_told([](Moment& moment, const Action&, Notice& notice) {

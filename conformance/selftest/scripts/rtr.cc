@@ -72,9 +72,16 @@ class Keeper : public runner::Target {
   Recorder target_;
 };
 
+// Returns whether it sends more bytes at once, or lasts longer, than any script.
+bool is_beyond(const Script& script) {
+  return script.length() > kLengthMax ||
+         std::any_of(script.steps.begin(), script.steps.end(),
+                     [](const Step& step) { return step.bytes.size() > kSendBytesMax; });
+}
+
 bool fits(const Script& script) {
   const auto whole = [](const Step& step) { return fitting_delay(step.delay) == step.delay; };
-  return script.steps.size() <= kStepsMax && script.length() <= kLengthMax &&
+  return script.steps.size() <= kStepsMax &&
          std::all_of(script.steps.begin(), script.steps.end(), whole);
 }
 
@@ -96,6 +103,7 @@ std::vector<CaseScript> scripts_of(const trace::File& file, const trace::Case& o
     Ticks given = 0;
     for (const Step& step : script.steps) given += step.delay;
     script.rest = std::min(result.length - given, kRestMax);
+    if (is_beyond(script)) continue;
     if (!fits(script)) throw std::runtime_error(one.name + ": too long for a script");
     out.push_back(std::move(*each));
   }

@@ -44,8 +44,12 @@ bool is_ack(const trace::Message& message) {
   return kind != nullptr && kind->text == "rubicon_ack";
 }
 
-bool is_for(const trace::Line& line, const std::string& link) {
-  return line.link == "*" || line.link == link;
+// Returns whether it is a frame of a type that the protocol does not have on any line: what a node
+// says besides is its own. (decision 124)
+bool is_foreign(const Output& output) {
+  const trace::Schema& schema = trace::Schema::get();
+  return output.is_frame && !schema.payload_type(LinkKind::kRadio, output.frame.type) &&
+         !schema.payload_type(LinkKind::kSerial, output.frame.type);
 }
 
 }  // namespace
@@ -97,11 +101,16 @@ Ticks NodeLog::run_until(Ticks time) {
   return reached;
 }
 
+bool NodeLog::is_about(const trace::Line& line, const Seen& seen) {
+  const bool any_message = line.message.name == "*";
+  return (line.link == "*" || line.link == seen.link) && !(any_message && seen.foreign);
+}
+
 void NodeLog::read_outputs() {
   const std::vector<Output>& outputs = target_->outputs();
   for (std::size_t i = seen_.size(); i < outputs.size(); ++i) {
     const Output& output = outputs[i];
-    seen_.push_back({message_of(output), link_name(output), false});
+    seen_.push_back({message_of(output), link_name(output), is_foreign(output)});
     const Seen& seen = seen_.back();
     trace::Line line =
         output.is_frame
@@ -164,7 +173,7 @@ const Output* NodeLog::take(const trace::Line& line, const Window& window,
   const std::vector<Output>& outputs = target_->outputs();
   for (std::size_t i = 0; i < seen_.size(); ++i) {
     Seen& seen = seen_[i];
-    if (seen.taken || !is_for(line, seen.link) || !window.holds(outputs[i].time)) continue;
+    if (seen.taken || !is_about(line, seen) || !window.holds(outputs[i].time)) continue;
     if (const auto next = next_.find(seen.link); next != next_.end() && i < next->second) continue;
     if (!trace::match(line, seen.message, bindings)) continue;
     seen.taken = true;
@@ -186,7 +195,7 @@ const Output* NodeLog::forbidden(const trace::Line& line, const Window& window,
   const std::vector<Output>& outputs = target_->outputs();
   for (std::size_t i = 0; i < seen_.size(); ++i) {
     const Seen& seen = seen_[i];
-    if (seen.taken || !is_for(line, seen.link) || !window.holds(outputs[i].time)) continue;
+    if (seen.taken || !is_about(line, seen) || !window.holds(outputs[i].time)) continue;
     trace::Bindings copy = bindings;
     if (trace::match(line, seen.message, copy)) return &outputs[i];
   }
@@ -200,7 +209,7 @@ NearestMiss NodeLog::nearest_miss(const trace::Line& line, const Window& window,
   NearestMiss miss{"it emitted nothing there", {"missing"}};
   for (std::size_t i = 0; i < seen_.size(); ++i) {
     const Seen& seen = seen_[i];
-    if (seen.taken || !is_for(line, seen.link) || outputs[i].time > latest) continue;
+    if (seen.taken || !is_about(line, seen) || outputs[i].time > latest) continue;
     trace::Bindings copy = bindings;
     const trace::Match match = trace::match(line, seen.message, copy);
     const bool in_time = window.holds(outputs[i].time);
@@ -231,7 +240,7 @@ NearestMiss NodeLog::nearest_miss(const trace::Line& line, const Window& window,
       }
     }
   }
-  const auto used = [&](const Seen& one) { return is_for(line, one.link); };
+  const auto used = [&](const Seen& one) { return is_about(line, one); };
   if (std::ranges::none_of(seen_, used)) miss.evidence.insert("unused");
   return miss;
 }

@@ -62,8 +62,12 @@ class NodeLog {
   struct Seen {
     trace::Concrete message;
     std::string link;
+    bool foreign = false;  // `*` does not mean it.
     bool taken = false;
   };
+  /// Returns whether the line can be about this output: by its link, and as a message of the
+  /// protocol where it says `*`.
+  static bool is_about(const trace::Line& line, const Seen& seen);
   Window given(Ticks now);
   void read_outputs();
   std::string link_name(const Output& output) const;

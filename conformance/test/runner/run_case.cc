@@ -31,6 +31,7 @@ using trace::Op;
 constexpr Ticks kLateTicks = 1500;  // How long a missing output is awaited beyond its time.
 constexpr std::int64_t kLastTick = INT32_MAX;  // Clocks wrap after twice that.
 constexpr Ticks kGrainTicks = 10;  // Of an adapter's own clock, or of its rate in a second.
+constexpr std::int64_t kRealTicksMax = 600 * machine::kTicksPerSecond;  // A wait in real time.
 
 // Returns a number that no trace uses by chance, another one for the next seed.
 std::int64_t seeded_number(std::uint64_t seed) {
@@ -129,6 +130,18 @@ class Run {
     auto node = nodes_.begin();
     for (const trace::NodeHeader& header : scope_.nodes) {
       if (header.iut) reset(*node++, header);
+    }
+    expect_patience();
+  }
+
+  // Refuses to wait for an hour where the runner does not turn the clock.
+  void expect_patience() const {
+    const bool real = std::any_of(nodes_.begin(), nodes_.end(), [](const NodeLog& node) {
+      return node.target().tolerance().late > 0;
+    });
+    for (const Line* line : case_.lines()) {
+      if (!real || amount(*line, line->time.from, line->time.from_terms) <= kRealTicksMax) continue;
+      throw NotBuilt("it takes more than ten minutes, and time is real");
     }
   }
 

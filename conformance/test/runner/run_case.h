@@ -60,7 +60,7 @@ struct CaseResult {
   std::vector<Failure> failures;
   std::string reason;            ///< Why it is inconclusive, skipped or an error.
   std::set<std::string> unseen;  ///< Links that it looks at and the target does not show.
-  bool not_built = false;        ///< Skipped: the target cannot be what the case states of it.
+  bool not_built = false;        ///< Skipped: the target cannot be what the case is for.
   Ticks length = 0;              ///< Virtual time that passed.
   trace::Case log;               ///< Everything that was given and came back.
 };

@@ -334,6 +334,51 @@ TEST(RunCase, WhatIsUnsupportedIsSkipped) {
   EXPECT_EQ(result.reason, "calls");
 }
 
+TEST(RunCase, NobodyWaitsForAnHour) {
+  const char* const lines = "@4400000 m5 < app get_clock()\n";
+  EXPECT_EQ(run(lines, {}).verdict, CaseVerdict::kPass);
+  const CaseResult real = run<RealTicker>(lines, {});
+  EXPECT_EQ(real.verdict, CaseVerdict::kSkip);
+  EXPECT_TRUE(real.not_built);
+}
+
+// Sends a frame of this type at each of its times.
+template <std::uint8_t kType>
+class Sender : public Ticker {
+ public:
+  using Ticker::Ticker;
+  Ticks run_until(Ticks time) override {
+    const std::size_t before = Ticker::outputs().size();
+    const Ticks reached = Ticker::run_until(time);
+    if (Ticker::outputs().size() > before) {
+      Output& output = sent_.emplace_back(Ticker::outputs().back());
+      output.is_frame = true;
+      output.frame.type = kType;
+      output.frame.size_bytes = 4;
+    }
+    return reached;
+  }
+  const std::vector<Output>& outputs() const override { return sent_; }
+
+ private:
+  std::vector<Output> sent_;
+};
+
+// A malformed message is the protocol's, also on a line where its type has no business.
+TEST(RunCase, FramesOfOtherTypesAreNobodysMessages) {
+  constexpr std::uint8_t kOwn = 200;
+  constexpr std::uint8_t kNet = 28;
+  constexpr std::uint8_t kConfig = 37;
+  const char* const silent = "@0..90 m5 !> rA *\n";
+  EXPECT_EQ(run<Sender<kOwn>>(silent, {30}).verdict, CaseVerdict::kPass);
+  EXPECT_EQ(run<Sender<kNet>>(silent, {30}).verdict, CaseVerdict::kFail);
+  EXPECT_EQ(run<Sender<kConfig>>(silent, {30}).verdict, CaseVerdict::kFail);
+  EXPECT_EQ(run<Sender<kOwn>>("@0..90 m5 !> * *\n", {30}).verdict, CaseVerdict::kPass);
+  EXPECT_EQ(run<Sender<kOwn>>("@0..90 m5 > rA *\n", {30}).verdict, CaseVerdict::kFail);
+  EXPECT_EQ(run<Sender<kOwn>>("@0..90 m5 !> rA am(type=200 ...)\n", {30}).verdict,
+            CaseVerdict::kFail);
+}
+
 TEST(RunCase, ARuleBrokenBeforeASkipStaysBroken) {
   for (const char* lines : {"@0..90 m5 !> app clock(*) [J4-SEQ]\n@90 m5 < app get_clock()\n",
                             "@90 m5 < app get_clock()\n@0..80 m5 !> app clock(*) [J4-SEQ]\n"}) {

@@ -32,7 +32,8 @@ class Unsupported : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The target cannot be built with what the case states of its node.
+/// The target cannot be what the case is for: it is not built with what that states of its node, or
+/// its clock, which we do not turn, would take too long.
 class NotBuilt : public Unsupported {
  public:
   using Unsupported::Unsupported;

@@ -282,8 +282,10 @@ TEST(Live, BaseStationWithItsApplication) {
   const std::vector<std::string> names = station_cases({""});
   EXPECT_GE(names.size(), 25U);
   for (const CaseResult& result : run_with_application(names, "none")) {
-    // This station calls no mote gone, and these cases are for one that states when.
-    const bool not_built = result.name.starts_with("leaving.");
+    // This station calls no mote gone, and these cases are for one that states when. An hour is too
+    // long for us.
+    const bool not_built =
+        result.name.starts_with("leaving.") || result.name == "narrow.base_station_hour";
     EXPECT_EQ(runner::verdict_text(result.verdict), not_built ? "skip" : "pass")
         << result.name << ": " << result.reason << runner::explain(result, "cases");
   }

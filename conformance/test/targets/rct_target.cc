@@ -19,6 +19,7 @@ using runner::Unsupported;
 
 constexpr std::size_t kOutputsAtOnceMax = 1000;  // At one instant.
 constexpr Ticks kClockSlackTicks = 50;
+constexpr Ticks kUntilTicksMax = 1U << 16;  // A minute.
 
 // 257 has an inverse: returns the seed that makes this first number, as runner::config_of takes it.
 constexpr std::uint16_t seed_of(std::uint16_t first_seq) {
@@ -209,11 +210,19 @@ Ticks RctTarget::run_until(Ticks time) {
   return let_pass(time);
 }
 
-// Does the work of run_until, but for link acks. Does not trust `next`: asks with `until` anyway,
-// and then holds the adapter to its `next`.
+// Does the work of run_until, but for link acks. No answer is to take long: a simulated
+// microcontroller needs its time for an hour, too.
 Ticks RctTarget::let_pass(Ticks time) {
   time = std::max(time, now_);
   if (settled_ && time <= now_) return now_;
+  const std::size_t before = outputs_.size();
+  do ask_until(std::min(time, now_ + kUntilTicksMax));
+  while (now_ < time && outputs_.size() == before);
+  return now_;
+}
+
+// Does not trust `next`: asks with `until` anyway, and then holds the adapter to its `next`.
+void RctTarget::ask_until(Ticks time) {
   const bool foretold = knows_next_;
   const std::optional<Ticks> next = next_;
   const std::size_t before = outputs_.size();
@@ -224,7 +233,6 @@ Ticks RctTarget::let_pass(Ticks time) {
     throw TargetBroken(fmt::format("it wrote something at {} after `next {}`",
                                    outputs_[before].time, next ? std::to_string(*next) : "-"));
   }
-  return now_;
 }
 
 Ticks RctTarget::ask(std::string command, Ticks time, bool passes_time) {

@@ -59,6 +59,7 @@ class RctTarget : public runner::Target {
   Ticks ask(std::string command, Ticks time, bool passes_time);
   Answer answer_to(const Asked& asked, lines::Milliseconds more);
   Ticks let_pass(Ticks time);
+  void ask_until(Ticks time);
   void compare_clocks(const std::string& command);
   void give_command(Ticks now, std::string command);
   void start_node(machine::Role role, const std::string& command, const trace::Statement& wanted);
