@@ -17,7 +17,7 @@ struct CaseUse {
 };
 
 /// By file, then as they stand there; each case once for a rule and a sign.
-inline constexpr std::array<CaseUse, 2396> kCaseUses{{
+inline constexpr std::array<CaseUse, 2410> kCaseUses{{
     {"after_set_island.base_station",
      "conformance/cases/after_set_island.rtr", "N9-SET"_rule, false},
     {"after_set_island.base_station",
@@ -60,6 +60,19 @@ inline constexpr std::array<CaseUse, 2396> kCaseUses{{
      "conformance/cases/after_set_island.rtr", "J6-CONTENT"_rule, false},
     {"after_set_island.comes_back",
      "conformance/cases/after_set_island.rtr", "J6-REPORT"_rule, false},
+    {"after_set_island.zero", "conformance/cases/after_set_island.rtr", "N9-SET"_rule, false},
+    {"after_set_island.zero", "conformance/cases/after_set_island.rtr", "J3-REPLY"_rule, false},
+    {"after_set_island.zero", "conformance/cases/after_set_island.rtr", "J6-ADD"_rule, false},
+    {"after_set_island.zero", "conformance/cases/after_set_island.rtr", "J6-CONTENT"_rule, false},
+    {"after_set_island.zero", "conformance/cases/after_set_island.rtr", "N6-DELIVER"_rule, false},
+    {"after_set_island.zero", "conformance/cases/after_set_island.rtr", "T2-ACK"_rule, false},
+    {"after_set_island.zero", "conformance/cases/after_set_island.rtr", "N6-FORWARD"_rule, false},
+    {"after_set_island.zero", "conformance/cases/after_set_island.rtr", "N3-LOCAL"_rule, false},
+    {"after_set_island.zero", "conformance/cases/after_set_island.rtr", "N1-SRC"_rule, false},
+    {"after_set_island.zero", "conformance/cases/after_set_island.rtr", "N6-ROUTE"_rule, false},
+    {"after_set_island.zero", "conformance/cases/after_set_island.rtr", "N9-SET"_rule, true},
+    {"after_set_island.zero", "conformance/cases/after_set_island.rtr", "N6-COLLISION"_rule, true},
+    {"after_set_island.zero", "conformance/cases/after_set_island.rtr", "N9-MEMBERS"_rule, false},
     {"after_set_island.base_station_zero",
      "conformance/cases/after_set_island.rtr", "N9-SET"_rule, false},
     {"after_set_island.base_station_zero",
@@ -474,6 +487,7 @@ inline constexpr std::array<CaseUse, 2396> kCaseUses{{
     {"edges_n.sink_island_zero", "conformance/cases/edges_n.rtr", "N6-ROUTE"_rule, false},
     {"edges_n.sink_island_zero", "conformance/cases/edges_n.rtr", "N6-COLLISION"_rule, true},
     {"edges_n.never_back", "conformance/cases/edges_n.rtr", "N6-ONCE"_rule, true},
+    {"edges_n.never_back", "conformance/cases/edges_n.rtr", "T1-DELIVER"_rule, true},
     {"edges_n.forwards_wait", "conformance/cases/edges_n.rtr", "N6-FORWARD"_rule, false},
     {"edges_n.forwards_wait", "conformance/cases/edges_n.rtr", "N6-CONTENT"_rule, false},
     {"edges_n.forwards_wait", "conformance/cases/edges_n.rtr", "N6-ROUTE"_rule, false},

@@ -362,9 +362,9 @@ void Acks::told(std::uint16_t node, const Observation& seen, std::uint16_t numbe
 
 // Judges the order of deliveries, by a log that has what the node was given.
 void Acks::judge_order(std::uint16_t node, const Observation& seen, const Arrived& arrived) {
-  Order& order = orders_[node];
-  const bool late = arrived.order < order.delivered;
-  order.delivered = std::max(order.delivered, arrived.order);
+  std::uint32_t& latest = orders_[node].delivered[static_cast<std::size_t>(arrived.link)];
+  const bool late = arrived.order < latest;
+  latest = std::max(latest, arrived.order);
   if (!context_.device(node).whole || !arrived.sure) return;
   Ring<Arrived, kRoom>& ring = arrived_[node];
   for (std::size_t i = 0; i < ring.size(); ++i) {

@@ -35,6 +35,7 @@
 // is weak, where the rule is a SHOULD): nothing that escaped would put it right.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <set>
 #include <vector>
@@ -127,8 +128,9 @@ class Acks {
   std::vector<Ring<Arrived, kRoom>> arrived_;
   std::vector<std::uint16_t> owed_;  ///< Surely owed acks of each node.
   struct Order {
-    std::uint32_t came = 0;       ///< How many messages.
-    std::uint32_t delivered = 0;  ///< The latest that its application got.
+    std::uint32_t came = 0;  ///< How many messages.
+    /// The latest of each line that its application got: lines have no order (decision 125).
+    std::array<std::uint32_t, 3> delivered{};
   };
   std::vector<Order> orders_;
   std::vector<std::set<std::uint8_t>> acked_apps_;  ///< APPIDs of messages that a node acked.

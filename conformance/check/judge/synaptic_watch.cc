@@ -14,7 +14,7 @@ const machine::Channel* find(const machine::Synaptic& channels, machine::Channel
   return nullptr;
 }
 
-constexpr std::int64_t kTickGapUs = 30'000;  // Between the frames of one tick.
+constexpr std::int64_t kOnAirUs = 5'000;  // The longest frame on the air, and its link ack.
 constexpr std::size_t kBufferMax = 4;        // And so many channels (decision 122).
 
 }  // namespace
@@ -257,7 +257,8 @@ void SynapticWatch::sent(std::uint16_t device, const Observation& seen, const Ne
   }
   const std::int64_t least = machine::us_of(node.channels.period_ticks) - context_.early_us();
   // The data of one tick leave one after the other, and the tick was before the first.
-  if (node.data_us < 0 || now - node.data_us > kTickGapUs) node.tick_us = now;
+  const std::int64_t gap_us = kOnAirUs + context_.early_us();
+  if (node.data_us < 0 || now - node.data_us > gap_us) node.tick_us = now;
   node.data_us = now;
   const std::int64_t last_tick_us = std::exchange(out->tick_us, node.tick_us);
   // What had to wait for the channel is nearer to the next.

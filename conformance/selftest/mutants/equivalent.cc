@@ -55,11 +55,6 @@ constexpr std::array kSurvivors{
              "Stale bytes may follow on the serial line, so that cases compare bodies that can be "
              "told from them, those of demo messages.",
              kNotJudged},
-    Survivor{
-        "accept: N6-ONCE sink own *",
-        "No rule says that a sink does not take for itself what comes by serial for the PC, only "
-        "that it does not send it back.",
-        kNotJudged},
     Survivor{"* tell J11-SEND send_result: seq_num",
              "A mote may keep what is sent before it joins, and tell its number (decision 118). No "
              "trace compares the number with what it then sends.",

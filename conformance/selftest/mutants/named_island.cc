@@ -209,6 +209,11 @@ void add_base_station(Mutants& out) {
 }
 
 void add_island_id(Mutants& out) {
+  add(out, "no_island_0", "SET_ISLAND_ID with 0 changes nothing.", {"N9-SET"_rule},
+      hear_only([](const Moment&, const Frame& frame) {
+        return frame.type != am::kConfig || frame.payload.size() < config::kValue.kEnd ||
+               get(frame, config::kValue) != 0;
+      }));
   add(out, "local_island_not_replaced", "SET_ISLAND_ID changes nothing.", {"N9-SET"_rule},
       hear_only([](const Moment&, const Frame& frame) { return frame.type != am::kConfig; }));
   add(out, "island_id_swapped", "SET_ISLAND_ID is read in the wrong byte order.", {"N9-SET"_rule},
