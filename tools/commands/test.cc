@@ -360,6 +360,8 @@ void add_selection(cli::Command& command, TestOptions& options) {
       "Golden traces, .rtr files or folders of them (default: those that were built in)");
   command.add_option("--cases", options.selection.globs, "Run only cases with such names: 'j4.*'")
       .check(cli::given);
+  command.add_option("--except", options.selection.excepted, "Leave out the cases with such names")
+      .check(cli::given);
   command
       .add_option("--rule", options.selection.requirements,
                   "Run only cases that try this rule or family: J4-SEQ, J4, J")
@@ -438,7 +440,7 @@ void add_options(cli::Command& command, TestOptions& options) {
                   "Wrap text at this many columns (default: the terminal's, else 100)")
       .between(cli::kColumnsMin, std::size_t{1000});
   cli::add_color_option(command, options.color);
-  for (const char* name : {"--target", "--cases", "--rule"}) {
+  for (const char* name : {"--target", "--cases", "--except", "--rule"}) {
     command.get_option(name).one_at_a_time();  // One at a time.
   }
 }

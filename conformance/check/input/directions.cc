@@ -13,7 +13,8 @@ std::optional<bool> shown_by(const Observation& seen) {
   if (seen.frame.type == am::kConfig) return true;
   Net net;
   const bool up = seen.frame.type == am::kNet && parse_net(seen.frame.payload, net) &&
-                  net.src.devid != machine::kNullDevid && net.dest == machine::Address{net.src.pid, machine::kNullDevid};
+                  net.src.devid != machine::kNullDevid &&
+                  net.dest == machine::Address{net.src.pid, machine::kNullDevid};
   if (seen.ack_request) return up ? std::nullopt : std::optional(true);
   return up ? std::optional(false) : std::nullopt;
 }

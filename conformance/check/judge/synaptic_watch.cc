@@ -15,7 +15,7 @@ const machine::Channel* find(const machine::Synaptic& channels, machine::Channel
 }
 
 constexpr std::int64_t kOnAirUs = 5'000;  // The longest frame on the air, and its link ack.
-constexpr std::size_t kBufferMax = 4;        // And so many channels (decision 122).
+constexpr std::size_t kBufferMax = 4;     // And so many channels (decision 122).
 
 }  // namespace
 

@@ -49,14 +49,12 @@ void check_requirement(const Cases& cases, const std::string& requirement) {
 }
 
 bool takes(const Selection& selection, const SuiteCase& one) {
+  const auto named = [&](const std::string& glob) { return is_like(glob, one.blank.name); };
   const auto& globs = selection.globs;
   const auto& rules = selection.requirements;
   const auto& roles = one.blank.roles;
-  if (!globs.empty() && std::none_of(globs.begin(), globs.end(), [&](const std::string& glob) {
-        return is_like(glob, one.blank.name);
-      })) {
-    return false;
-  }
+  if (!globs.empty() && std::none_of(globs.begin(), globs.end(), named)) return false;
+  if (std::any_of(selection.excepted.begin(), selection.excepted.end(), named)) return false;
   if (!rules.empty() && std::none_of(rules.begin(), rules.end(),
                                      [&](const std::string& rule) { return fits(one, rule); })) {
     return false;
@@ -92,6 +90,7 @@ bool is_of(std::string_view rule, std::string_view asked) {
 
 std::vector<SuiteCase> select(const Cases& cases, const Selection& selection) {
   for (const std::string& glob : selection.globs) check_glob(cases, glob);
+  for (const std::string& glob : selection.excepted) check_glob(cases, glob);
   for (const std::string& rule : selection.requirements) check_requirement(cases, rule);
   std::vector<SuiteCase> chosen;
   std::size_t taken = 0;

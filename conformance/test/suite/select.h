@@ -20,10 +20,11 @@ std::optional<Shard> parse_shard(std::string_view text);
 
 /// Conditions on a case, all of which must hold; empty lists match everything.
 struct Selection {
-  std::vector<std::string> globs;         ///< Its name is like one of them.
-  std::vector<std::string> requirements;  ///< It names one: "J4-SEQ", or "J4" for all of J4.
-  std::optional<machine::Role> role;      ///< Role of a node under test.
-  Shard shard;                            ///< Applied last: every n-th case.
+  std::vector<std::string> globs;          ///< Its name is like one of them.
+  std::vector<std::string> requirements;   ///< It names one: "J4-SEQ", or "J4" for all of J4.
+  std::optional<machine::Role> role;       ///< Role of a node under test.
+  Shard shard = {};                        ///< Applied last: every n-th case.
+  std::vector<std::string> excepted = {};  ///< Its name is like none of them.
 };
 
 /// Matches `*` and `?` as a shell does.

@@ -62,6 +62,16 @@ TEST(Selection, ByName) {
   EXPECT_THAT(complaint({{"a.*", "c.*"}, {}, {}, {}}), HasSubstr("'c.*'"));
 }
 
+TEST(Selection, AllButSomeNames) {
+  Selection selection;
+  selection.excepted = {"a.s*"};
+  EXPECT_THAT(names(selection), ElementsAre("a.mote", "b.both"));
+  selection.globs = {"a.*"};
+  EXPECT_THAT(names(selection), ElementsAre("a.mote"));
+  selection.excepted = {"a.zink"};
+  EXPECT_THAT(complaint(selection), HasSubstr("no case is called 'a.zink'"));
+}
+
 TEST(Selection, ByRule) {
   EXPECT_THAT(names({{}, {"J1"}, {}, {}}), ElementsAre("a.mote"));
   EXPECT_THAT(names({{}, {"j10-mote"}, {}, {}}), ElementsAre("b.both"));
