@@ -74,6 +74,9 @@ std::vector<check::KnownNode> known_nodes(const CheckOptions& options) {
   for (const std::string& text : options.sinks) {
     const auto [id, island] = pair_of("--sink", text, "ID=ISLAND as in 1=11");
     check::KnownNode node{address("--sink", id), machine::Role::kSink, address("--sink", island)};
+    if (machine::is_reserved(node.island)) {
+      throw cli::UsageError("--sink", island + " is reserved: no island has this number");
+    }
     add_node("--sink", text, node, out);
   }
   return out;

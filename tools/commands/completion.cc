@@ -59,7 +59,8 @@ std::vector<std::string> usual_values(const std::string& command, const cli::Opt
   if (name == kSpec) return cli::protocol_names();
   if (name == "as" || name == "message") return message_names();
   if (name == "rule") return rule_names();
-  if (name == "case" || name == "except" || (name == "cases" && command != "coverage")) return case_names();
+  const bool names_cases = name == "case" || name == "except" || name == "cases";
+  if (names_cases && command != "coverage") return case_names();
   if (name == "fields" || name == "filter") {
     return format::known_names(*reflect::find_protocol("rubicon"));
   }

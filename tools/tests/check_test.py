@@ -386,7 +386,7 @@ class Inputs(Folder):
             ([CLEAN, "--node", "70000=mote"], "expected 0 to 65535"),
             ([CLEAN, "--node", "2=mote", "--node", "2=sink"], "another time"),
             ([CLEAN, "--sink", "1"], "expected ID=ISLAND"),
-            ([CLEAN, "--sink", "1=0"], "no island"),
+            ([CLEAN, "--sink", "1=65535"], "no island"),
             ([CLEAN, "--sink", "2=11", "--node", "2=mote"], "another time"),
             ([CLEAN, "--tester", "x"], "expected 0 to 65535"),
             ([CLEAN, "--response", "-1"], "--response"),

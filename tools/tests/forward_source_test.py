@@ -215,7 +215,7 @@ class Sources(unittest.TestCase):
             mote.accept()
             client = Client(self, running)
             mote.say(from_mote(packet(1, 100)) * 100)
-            running.wait_for(f"^rubric: {kept}: File too large$")
+            running.wait_for(f"^rubric: cannot write {kept}: File too large$")
             mote.say(from_mote(packet(2)))
             self.assertEqual(client.packets(101)[-1], packet(2))
             self.assertEqual(running.end()[0], 74)

@@ -247,8 +247,10 @@ class Identifier {
       const bool named = given_.names(stream.am, stream.plain_island);
       const bool goes_on = before != kNobody && follows(stream, before);
       if (goes_on || (before != kNobody && named && !another)) {
-        // Where no frame escapes, only a reboot makes the DSNs begin elsewhere.
-        const bool anew = stream.joins || stream.sink || options_.sniffer_complete;
+        // Where no frame escapes, only a reboot makes the DSNs begin elsewhere; but the DSNs of one
+        // who was silent for long may have gone with the past.
+        const bool complete = options_.sniffer_complete && run_.past.until_us < 0;
+        const bool anew = stream.joins || stream.sink || complete;
         starts_life_[i] =
             goes_on && out_.devices[before].radio && anew && !reboots_.contains(before);
         take_stream(out_.devices[before], stream);
