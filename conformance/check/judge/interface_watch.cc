@@ -34,7 +34,6 @@ void InterfaceWatch::called(std::uint16_t device, const Observation& seen) {
     node.sends = context_.device(device).role == machine::Role::kMote && radio.again;
     node.left.reset();
     node.sends_off = switched_off(device, Link::kRadio);
-    node.off_left.reset();
     node.off_next.reset();
     return;
   }
@@ -56,7 +55,7 @@ void InterfaceWatch::called(std::uint16_t device, const Observation& seen) {
 void InterfaceWatch::told(std::uint16_t device, const Observation& seen) {
   Node& node = look(device);
   if (const auto* result = std::get_if<machine::SendResult>(seen.notice)) {
-    if (node.sends_off && node.off_left == result->seq_num) {
+    if (node.sends_off && node.left == result->seq_num) {
       judge_off(device, seen, node, result->seq_num);
     } else if (node.sends_off && result->seq_num != machine::kNoSeq) {
       node.off_next = result->seq_num;
@@ -142,11 +141,9 @@ void InterfaceWatch::judge_off(std::uint16_t device, const Observation& seen, No
 void InterfaceWatch::own_message(std::uint16_t device, const Observation& seen,
                                  std::uint16_t seq_num) {
   Node& node = nodes_[device];
-  if (seen.frame.link == Link::kRadio && switched_off(device, Link::kRadio)) {
-    if (node.off_next == seq_num) judge_off(device, seen, node, seq_num);
-    node.off_left = seq_num;
-  }
-  if (node.sends) node.left = seq_num;
+  const bool off = seen.frame.link == Link::kRadio && switched_off(device, Link::kRadio);
+  if (off && node.off_next == seq_num) judge_off(device, seen, node, seq_num);
+  if (off || node.sends) node.left = seq_num;
   if (node.awaited != seq_num) return;
   node.awaited.reset();
   node.interfaces[0].again = false;

@@ -45,9 +45,8 @@ class InterfaceWatch {
     std::optional<std::uint16_t> left;     ///< The number of a message that left since the call.
     std::optional<std::uint16_t> awaited;  ///< The number of a message accepted since then.
     Place accepted;
-    bool sends_off = false;                 ///< The last call of send came while the radio was off;
-    std::optional<std::uint16_t> off_left;  ///< the number of a message that left since,
-    std::optional<std::uint16_t> off_next;  ///< or of the one that it accepted.
+    bool sends_off = false;                 ///< The last call of send came while the radio was off,
+    std::optional<std::uint16_t> off_next;  ///< and accepted the message with this number.
   };
 
   Node& look(std::uint16_t node);

@@ -486,12 +486,12 @@ void MoteJoins::net_msg(std::uint16_t mote, const Observation& seen, const Net& 
     said.expected = "No net_msg before ack_join.";
   }
   // A member may have another address by a join since it last showed this one.
-  const std::int64_t since =
-      member ? std::max(h.accepted_us, h.sent_us) : context_.device(mote).first_us;
   const bool ever = h.join.phase == Phase::kOutside && h.first_request_us == 0;
-  Severity severity = context_.without(mote, since, now);
-  if (ever) severity = context_.without_ever(mote, now);
-  if (ever && watch.booted_us >= 0) severity = context_.without(mote, watch.booted_us, now);
+  const std::int64_t since = member ? std::max(h.accepted_us, h.sent_us)
+                             : ever ? watch.booted_us
+                                    : context_.device(mote).first_us;
+  Severity severity = ever && watch.booted_us < 0 ? context_.without_ever(mote, now)
+                                                  : context_.without(mote, since, now);
   if (!only) severity = std::min(severity, Severity::kInconclusive);
   context_.report(member ? "N1-SRC"_rule : "J11-SEND"_rule, severity, seen.place, mote,
                   std::move(said));
