@@ -16,6 +16,8 @@ namespace rubric::machine {
 constexpr std::size_t kMembersMax = 20;  ///< In a sink's list (release 1.0).
 constexpr std::size_t kPendingMax = 20;  ///< Joins that a sink has answered and not seen acked.
 constexpr std::size_t kAwaitedMax = 8;   ///< Reliable messages whose ack is awaited at once.
+constexpr std::size_t kRadioRoom = 4;    ///< Messages in each direction of the radio (the paper).
+constexpr std::size_t kSerialRoom = 2;   ///< The same of the serial line.
 /// In each direction, at most; Profile::channels_max is the number of a node (decision 129).
 constexpr std::size_t kChannelsRoom = 8;
 constexpr std::size_t kConnectionsMax = 10;
@@ -151,9 +153,10 @@ struct State {
   BoundedList<Presence, kMembersMax> present;
   BoundedList<Awaited, kAwaitedMax> awaited;
   Synaptic synaptic;
-  Interface<4> radio;
-  Interface<2> serial;
-  BoundedQueue<Link, 6> waiting;  ///< The lines of what is in radio.in and serial.in, by arrival.
+  Interface<kRadioRoom> radio;
+  Interface<kSerialRoom> serial;
+  /// The lines of what is in radio.in and serial.in, by arrival.
+  BoundedQueue<Link, kRadioRoom + kSerialRoom> waiting;
   friend bool operator==(const State&, const State&) = default;
 };
 

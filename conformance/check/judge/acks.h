@@ -94,7 +94,7 @@ class Acks {
   void sent(std::uint16_t node, const Observation& seen, const Net& ack);
   /// Judges a message that by a log the application of `node` got.
   void delivered(std::uint16_t node, const Observation& seen, const machine::Received& received);
-  /// Judges the order in which the application of `node` is told, by its log, of an ack.
+  /// Judges by a log whether the application of `node` is told of this ack in the order of arrival.
   void told(std::uint16_t node, const Observation& seen, std::uint16_t number);
   /// Notes that the node sent something at this time, so whatever it still owes is overdue.
   void showed_life(std::uint16_t node, std::int64_t now_us);

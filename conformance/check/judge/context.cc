@@ -292,13 +292,12 @@ int Context::backlog(std::uint16_t node, std::int64_t time_us) const {
 
 bool Context::crowded(std::uint16_t node, std::int64_t time_us) const {
   constexpr std::size_t kCrowd = 2;
-  constexpr int kRadioIn = 4;
-  constexpr int kSerialIn = 2;
   constexpr std::int64_t kAroundUs = 100'000;
   const Device& its = device(node);
   if (its.whole) {
     const bool mote = its.role == machine::Role::kMote;
-    return backlog(node, time_us) >= (mote ? kRadioIn : kSerialIn);
+    const std::size_t room = mote ? machine::kRadioRoom : machine::kSerialRoom;
+    return backlog(node, time_us) >= static_cast<int>(room);
   }
   // A message that came at most the response time before may still be in a buffer.
   const auto from =

@@ -317,8 +317,8 @@ void SynapticWatch::able(std::uint16_t device, bool radio_on, std::int64_t now_u
   nodes_[device].on_us = radio_on ? now_us : -1;
 }
 
-// Returns since when the node can send by `line`, or without one tell its application; -1 if it
-// cannot now, or that is unknown. What is `local` needs no radio.
+// Returns since when the node has been able to send by `line` or, if there is none, to tell its
+// application; -1 if it cannot now, or if nobody knows. Data of a `local` channel need no radio.
 std::int64_t SynapticWatch::able_since(std::uint16_t device, std::int64_t now_us,
                                        std::optional<machine::Link> line, bool local) const {
   const Node& node = nodes_[device];

@@ -175,7 +175,7 @@ case log
   EXPECT_TRUE(early);
 }
 
-// A line of which a sniffer wrote the flags, or none.
+// A capture of a serial line, with or without flags of direction.
 class SerialCapture {
  public:
   explicit SerialCapture(std::optional<bool> flags_of_mote) : flags_of_mote_(flags_of_mote) {

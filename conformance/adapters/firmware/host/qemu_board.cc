@@ -162,7 +162,7 @@ void QemuBoard::hear(nanoseconds longest, Listener& listener) {
   if (ready == 0 && !has_clock()) throw BoardBroken(fmt::format("{} says nothing", qemu_));
   if (ready <= 0) return;
   read_some(link_, [&](std::uint8_t byte) { listener.link_byte(byte); });
-  // What it wrote there first is there, even if it was not when the wait ended.
+  // What it wrote to the serial line before those bytes has come by now, whatever ppoll saw.
   read_some(serial_, [&](std::uint8_t byte) { listener.serial_byte(byte); });
 }
 
