@@ -41,11 +41,20 @@ std::vector<pid_t> children() {
   return out;
 }
 
-enum class Whose : unsigned char { kOurs, kAnothers, kNobodys };
+enum class Whose : unsigned char { kOurs, kAnothers, kNobodys, kUnknown };
+
+std::string file_of(pid_t pid, std::string_view name) {
+  std::ifstream file(fmt::format("/proc/{}/{}", pid, name));
+  return {std::istreambuf_iterator<char>(file), {}};
+}
 
 Whose whose(pid_t pid, const std::string& mark) {
-  std::ifstream file(fmt::format("/proc/{}/environ", pid));
-  const std::string text(std::istreambuf_iterator<char>(file), {});
+  std::string text = file_of(pid, "environ");
+  if (text.empty()) {
+    // Both are empty in the middle of exec(), and when it is dead; the first alone without one.
+    if (file_of(pid, "cmdline").empty()) return Whose::kUnknown;
+    text = file_of(pid, "environ");
+  }
   const auto holds = [&](std::string_view word) {
     return text.starts_with(word) || text.find('\0' + std::string(word)) != text.npos;
   };
@@ -75,7 +84,7 @@ void end_orphans(const std::string& mark) {
       if (groups.is_leader || groups.starting) continue;
       const Whose its = whose(pid, mark);
       if (its == Whose::kAnothers || (its == Whose::kNobodys && groups.any)) continue;
-      ::kill(pid, SIGKILL);
+      if (its != Whose::kUnknown) ::kill(pid, SIGKILL);
       ::waitpid(pid, nullptr, WNOHANG);
       any = true;
     }
