@@ -87,16 +87,16 @@ void Announcements::announce(SinkWatch& sink, const Place& at, machine::Address 
   }
   if (watch.report_due && !notice) {
     sink.set_due(watch, false);
-    context_.left(sink.device, machine::Link::kSerial, at, watch.ack_whole_us,
-                  context_.handled_us(sink.device, watch.ack_whole_us, at.time_us),
+    context_.left(sink.device, machine::Link::kSerial, at, watch.admitted_us,
+                  context_.handled_us(sink.device, watch.admitted_us, at.time_us),
                   "serial_joined of mote " + number(address.devid));
   }
   if (next_.empty()) {
     refuse_report(sink, watch, at, {address.devid, 0, descriptor}, notice, astray);
     return;
   }
-  if (!notice && watch.ack.frame != 0) {
-    sink.reported_us = std::max(sink.reported_us, watch.ack.time_us);
+  if (!notice && watch.admitted.frame != 0) {
+    sink.reported_us = std::max(sink.reported_us, watch.admitted.time_us);
   }
   if (stored && *stored != descriptor) {
     // A sink with one memory for all motes announces the descriptor of another mote's request.
@@ -228,18 +228,19 @@ void Announcements::overdue_reports(SinkWatch& sink, std::int64_t end_us) {
   const std::int64_t now_us = whole && end ? end_us : sink.serial_us;
   for (const auto& [am, watch] : sink.motes) {
     const std::int64_t due_us =
-        context_.due_us(sink.device, std::max(watch.ack_whole_us, sink.serial_on_us),
+        context_.due_us(sink.device, std::max(watch.admitted_us, sink.serial_on_us),
                         machine::Link::kSerial) +
         (sink.behind ? kFrameUs : 0);
     if (watch.report_due && now_us > due_us) due.push_back(am);
   }
   std::sort(due.begin(), due.end(), [&](std::uint16_t a, std::uint16_t b) {
-    return std::pair(sink.motes[a].ack.time_us, a) < std::pair(sink.motes[b].ack.time_us, b);
+    return std::pair(sink.motes[a].admitted.time_us, a) <
+           std::pair(sink.motes[b].admitted.time_us, b);
   });
   for (const std::uint16_t am : due) {
     PairWatch& watch = sink.motes[am];
     // Its list may be full of members from before the capture, unless it has taken a later one.
-    const bool room = context_.options.start_cold || sink.reported_us > watch.ack.time_us;
+    const bool room = context_.options.start_cold || sink.reported_us > watch.admitted.time_us;
     if (!room && !end) continue;
     sink.set_due(watch, false);
     const auto owes = [](const SinkHypothesis& h) { return !h.unknown && h.owes_report; };
@@ -248,10 +249,10 @@ void Announcements::overdue_reports(SinkWatch& sink, std::int64_t end_us) {
     if (joins_.listed(sink) >= context_.profile().members_max) continue;
     context_.report(
         "J6-REPORT"_rule,
-        room && !context_.who.damaged(watch.ack.time_us, now_us)
+        room && !context_.who.damaged(watch.admitted.time_us, now_us)
             ? context_.on_line(sink.device, Severity::kFail)
             : Severity::kInconclusive,
-        watch.ack, sink.device,
+        watch.admitted, sink.device,
         {"The ack_join of mote " + number(am) +
              (whole ? " was received (by the sink's log)"
                     : " was received (the link acknowledged it)") +
@@ -266,12 +267,14 @@ void Announcements::overdue_reports(SinkWatch& sink, std::int64_t end_us) {
 void Announcements::unannounced(const SinkWatch& sink, std::uint16_t mote_am,
                                 const PairWatch& watch, std::int64_t end_us) {
   const Device& device = context_.device(sink.device);
-  if (!device.hearing || !device.application || !watch.ack.timed() || watch.set.empty()) return;
-  if (end_us <= context_.due_us(sink.device, watch.ack_whole_us)) return;
+  if (!device.hearing || !device.application || !watch.admitted.timed() || watch.set.empty())
+    return;
+  // It is told by what comes from the radio, whatever the serial line is busy with.
+  if (end_us <= context_.due_us(sink.device, watch.admitted_us, machine::Link::kRadio)) return;
   const auto owes = [](const SinkHypothesis& h) { return !h.unknown && h.owes_notice; };
   if (!std::all_of(watch.set.begin(), watch.set.end(), owes)) return;
   if (joins_.listed(sink) > context_.profile().members_max) return;
-  context_.report("J6-ADD"_rule, Severity::kFail, watch.ack, sink.device,
+  context_.report("J6-ADD"_rule, Severity::kFail, watch.admitted, sink.device,
                   {"The sink was given the ack_join of mote " + number(mote_am) +
                        " with the number that it had answered, and does not list the mote: no "
                        "moteJoined followed within " +

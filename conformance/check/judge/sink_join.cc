@@ -529,7 +529,10 @@ void SinkJoins::ack_join(std::uint16_t, const Observation& seen, const AckJoin& 
       next_.push_back(heard);
     }
     watch.ack = seen.place;
-    watch.ack_whole_us = seen.place.time_us + air_us(seen);
+    if (admitted) {
+      watch.admitted = seen.place;
+      watch.admitted_us = seen.place.time_us + air_us(seen);
+    }
     watch.ignored_ack = admitted ? ReqId::kNone : ignored;
     const bool waits = sink.serial_off && !device.whole;
     if (sure && all_admit && device.shows_line() && !waits) sink.set_due(watch, true);

@@ -88,11 +88,12 @@ struct PairWatch {
   std::uint16_t request_seq = 0;
   bool asked = false;
   Place ack;                         ///< The last ack_join to this sink.
-  std::int64_t ack_whole_us = -1;    ///< When the sink has it whole.
+  Place admitted;                    ///< The last one that may have made it a member.
+  std::int64_t admitted_us = -1;     ///< When the sink has that one whole.
   ReqId ignored_ack = ReqId::kNone;  ///< Why the last one must have been ignored.
-  bool report_due = false;           ///< Surely owed since `ack`, and not yet complained about.
-  bool request_listed = false;       ///< The last request surely came while it was listed.
-  bool cut_off = false;              ///< It was listed when the sink's island became another.
+  bool report_due = false;      ///< Surely owed since `admitted`, and not yet complained about.
+  bool request_listed = false;  ///< The last request surely came while it was listed.
+  bool cut_off = false;         ///< It was listed when the sink's island became another.
 
   /// Takes the sink to list the mote, or not, and to owe nothing.
   void know_nothing() {
