@@ -168,7 +168,7 @@ function(rubric_test name)
   rubric_add_test(${name} "${arg_PARTS}" "${arg_LABEL}" "${arg_FOREIGN}" ${name} ${name})
   if(rapidcheck IN_LIST arg_DEPS)
     # A stated seed, so that a run says the same twice; only the long proofs take any seed.
-    set(runs "max_success=1000 max_size=200")
+    set(runs "max_success=$<IF:$<BOOL:${RUBRIC_SANITIZE}>,250,1000> max_size=200")
     set_tests_properties(${name} PROPERTIES ENVIRONMENT "RC_PARAMS=seed=1 ${runs}")
     add_test(NAME ${name}_any_seed COMMAND ${name} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
     rubric_label_test(${name}_any_seed long "" ${name})
@@ -191,6 +191,11 @@ function(rubric_script_test name)
   endif()
   rubric_add_test(${name} "${arg_PARTS}" "${arg_LABEL}" "${arg_FOREIGN}" "${targets}"
     ${arg_COMMAND})
+  if(arg_FOREIGN AND NOT arg_PARTS)
+    # Scripts start a program hundreds of times, a third of which would go into its last search for
+    # leaks; the tests of libraries and the replays of fuzz targets search for these.
+    set_tests_properties(${name} PROPERTIES ENVIRONMENT ASAN_OPTIONS=detect_leaks=0)
+  endif()
 endfunction()
 
 # rubric_have_tools(RESULT WHAT VARIABLE ...): RESULT says whether find_program or find_library set
