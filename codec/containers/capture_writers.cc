@@ -114,6 +114,7 @@ void PcapWriter::begin(std::string& out) {
 bool PcapWriter::write(const Packet& packet, std::string_view, std::string& out) {
   const std::uint16_t link_type = link_type_of(packet);
   if (link_type == 0 || link_type != link_type_) return false;
+  given_times_ += packet.time_ns == kNoTime;
   const auto ns =
       static_cast<std::uint64_t>(std::clamp<std::int64_t>(packet.time_ns, 0, kPcapTimeNsMax));
   put32(ns / kNsPerSecond, out);
@@ -166,12 +167,22 @@ bool PcapngWriter::write(const Packet& packet, std::string_view interface_name, 
   if (link_type == 0) return false;
   const std::uint32_t interface = interface_of(link_type, interface_name, out);
   ++interfaces_[interface].packets;
+  record_.clear();
+  append_record(packet, record_);
+  const bool plain = packet.comment.empty() && packet.direction == Direction::kUnknown;
+  if (packet.time_ns == kNoTime && interface == 0 && plain && packet.dropped_bytes == 0) {
+    const std::size_t block = open_block(kSimplePacket, out);
+    put32(record_.size(), out);
+    out += record_;
+    pad(record_.size(), out);
+    close_block(block, out);
+    return true;
+  }
+  given_times_ += packet.time_ns == kNoTime;
   if (packet.time_ns != kNoTime) last_ns_ = std::max<std::int64_t>(packet.time_ns, 0);
   if (first_ns_ == kNoTime) first_ns_ = last_ns_;
   first_ns_ = std::min(first_ns_, last_ns_);
   latest_ns_ = std::max(latest_ns_, last_ns_);
-  record_.clear();
-  append_record(packet, record_);
 
   const std::size_t block = open_block(kEnhancedPacket, out);
   put32(interface, out);
@@ -186,9 +197,7 @@ bool PcapngWriter::write(const Packet& packet, std::string_view interface_name, 
     put32(packet.direction == Direction::kInbound ? kDirectionInbound : kDirectionOutbound, flags);
     put_option(kOptPacketFlags, flags, out);
   }
-  if (!packet.comment.empty() || packet.direction != Direction::kUnknown) {
-    put_option(kOptEnd, {}, out);
-  }
+  if (!plain) put_option(kOptEnd, {}, out);
   close_block(block, out);
   return true;
 }

@@ -70,6 +70,11 @@ struct Packet {
 
   /// Returns whether only the capture's snap length is to blame for the error.
   bool cut_by_capture() const { return error.fault == Fault::kCut && link_type != 0; }
+  /// Returns whether `fcs` is not one: a CC24xx chip puts RSSI and link quality there.
+  bool has_cc24xx_trailer() const {
+    return fcs != kAbsent && radio.rssi == static_cast<std::int8_t>(fcs & 0xFF) &&
+           radio.lqi == (fcs >> 8 & 0x7F);
+  }
 };
 
 /// A callback for packets: a plain pair, so that calling it costs no more than a function pointer.

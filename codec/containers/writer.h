@@ -27,6 +27,12 @@ class Writer {
 
   /// Appends the end of the format.
   virtual void finish(std::string& out);
+
+  /// Returns how many packets without a time had to be given one.
+  std::uint64_t given_times() const { return given_times_; }
+
+ protected:
+  std::uint64_t given_times_ = 0;
 };
 
 /// Writes serial frames, each between two flags of its own, since motes drop a frame that shares
@@ -68,8 +74,9 @@ class PcapWriter final : public Writer {
 /// Writes a pcapng file: an interface for each pair of link type and interface name, described
 /// before its first packet; times in nanoseconds; direction flags; comments; at the end statistics
 /// with the times of the first and the last packet. Takes everything but a kBare packet without
-/// link type. Writes a packet without time with the time of the one before it. Source:
-/// draft-ietf-opsawg-pcapng.
+/// link type. A packet without time becomes a simple packet block, which has none; where such a
+/// block cannot say all (another interface than the first, direction, comment, bytes that the
+/// capture cut), it gets the time of the one before it. Source: draft-ietf-opsawg-pcapng.
 class PcapngWriter final : public Writer {
  public:
   using Writer::write;

@@ -87,7 +87,9 @@ std::string framing_error_text(const Frame& frame) {
   if (frame.error.fault == Fault::kCrc && packet.crc != kAbsent) {
     text += ": it is " + hex16(packet.crc) + ", the bytes give " + hex16(serial_crc(packet));
   }
-  if (frame.error.fault == Fault::kFcs && packet.fcs != kAbsent) {
+  if (frame.error.fault == Fault::kFcs && packet.has_cc24xx_trailer()) {
+    text += ", says its sniffer, which puts RSSI and link quality there";
+  } else if (frame.error.fault == Fault::kFcs && packet.fcs != kAbsent) {
     const std::uint16_t computed = rubric::fcs(packet.bytes);
     text += ": it is " + hex16(packet.fcs) + ", the bytes give " + hex16(computed);
   }

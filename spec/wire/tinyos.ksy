@@ -58,7 +58,7 @@ types:
         type: u1
         enum: dispatch
         valid: dispatch::active_message
-        doc: What the bytes after it are; this kit takes active messages.
+        doc: The format of what follows; 0 is an active message.
         -requirement: WIRE-AM-DISPATCH
       - id: dest
         type: u2
@@ -122,11 +122,12 @@ enums:
     0x8841: data
     0x8861: data_ack_request
   # Parts of a frame control field: its frame type, the request of a link ack, and all that makes a
-  # data frame one with an AM message (type, no security, one PAN, modes of both addresses).
+  # data frame one with an AM message (type, no security, one PAN, a DSN, no information elements, modes
+  # of both addresses; the two in the middle are bits of IEEE 802.15.4-2015, reserved before).
   frame_control_part:
     0x0007: type
     0x0020: ack_request
-    0xcc4f: shape
+    0xcf4f: shape
   serial_kind:
     67: ack
     68: packet_ack

@@ -141,8 +141,8 @@ const reflect::Protocol& choose_spec(const InputOptions& options) {
   if (best != &usual) {
     text::print(
         stderr,
-        "rubric: {}: read by the spec {}, which fits {} of its first {} messages wholly, {} "
-        "{} (--spec decides)\n",
+        "rubric: {}: read by the spec {}, which decodes {} of its first {} messages wholly, {} {} "
+        "(--spec chooses another)\n",
         file == "-" ? "stdin" : file, best->id, best_fit.wholly, usual_fit.messages, usual.id,
         usual_fit.wholly);
   }

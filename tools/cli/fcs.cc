@@ -11,6 +11,7 @@ constexpr std::int32_t kCrcBit = 0x8000;
 constexpr std::int32_t kCorrelationMin = 40;
 constexpr std::int32_t kCorrelationMax = 115;
 constexpr std::uint64_t kAlikeMin = 8;
+constexpr std::uint64_t kAlikeToSay = 3;
 
 bool has_fcs(const Packet& packet) {
   return packet.link_type == kLinkRadioFcs && packet.fcs != kAbsent &&
@@ -42,6 +43,10 @@ void FcsGuess::take(const Packet& packet) {
 
 bool FcsGuess::is_cc24xx() const {
   return alike_ >= kAlikeMin && sound_ * 50 <= alike_ && other_ * 9 <= alike_;
+}
+
+bool FcsGuess::may_be_cc24xx() const {
+  return alike_ >= kAlikeToSay && sound_ == 0 && other_ == 0 && !is_cc24xx();
 }
 
 void reread_fcs(FcsKind kind, Packet& packet) {

@@ -27,6 +27,8 @@ class FcsGuess {
  public:
   void take(const Packet& packet);
   bool is_cc24xx() const;
+  /// Returns whether they are too few to know, but all alike.
+  bool may_be_cc24xx() const;
 
  private:
   std::uint64_t sound_ = 0;

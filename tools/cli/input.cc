@@ -258,7 +258,7 @@ class Run {
 
   static std::string unknown_prefix_text(std::uint64_t line, const std::string& prefix) {
     return fmt::format(
-        "line {} has hex text after '{}', which is no time stamp that is known; these are: "
+        "line {} has hex text after '{}', which is not a known time stamp; known are: "
         "[12.3], (12.3), 12.3, 1764000000, 10:00:00 or 10:00:00 AM, after 2026-11-24, "
         "24.11.2026, 24/11/2026, Nov 24, Nov 24 2026 or no date, and then perhaps 'mote 2:'",
         line, prefix.substr(0, prefix.find_last_not_of(" \t") + 1));
@@ -276,8 +276,8 @@ class Run {
     if (const PrefixedLine line = find_prefixed_line(beginning); line.number != 0) {
       return unknown_prefix_text(line.number, {line.prefix.begin(), line.prefix.end()});
     }
-    return "this begins like no serial line, forwarder stream, pcap, pcapng or hex text; name it "
-           "with --input-format, or try 'tshark -r FILE -w FILE.pcapng'";
+    return "this is not a serial line, forwarder stream, pcap, pcapng or hex text; choose a format with "
+           "--input-format, or try 'tshark -r FILE -w FILE.pcapng'";
   }
 
   // Returns the whole text of a file of which `size` bytes are read.
@@ -300,7 +300,7 @@ class Run {
     }
     for (const auto& [link_type, count] : passed_over_) {
       if (is_network_link(link_type)) {
-        remark(fmt::format("{} of {} packets are no ZEP packets (UDP port {})", count,
+        remark(fmt::format("{} of {} packets are not ZEP packets (UDP port {})", count,
                            source_.number, kZepPort));
         continue;
       }
@@ -435,11 +435,11 @@ void add_input_options(Command& app, InputOptions& options) {
 
 void add_spec_option(Command& app, InputOptions& options, const std::string& names) {
   const std::string by_content =
-      options.spec == kAutoSpec ? "; auto is rubicon, unless another fits what is read better" : "";
+      options.spec == kAutoSpec ? "; auto is rubicon, unless another decodes more of what is read" : "";
   app.add_option(names, options.spec,
                  "Use this protocol above the AM layer: a name (list prints them; none shows bare "
-                 "messages), a .ksy file, or several, as a,b: of two with the same AM type the "
-                 "first" +
+                 "messages), a .ksy file, or several, as a,b: where two have an AM type, the "
+                 "first of them has it" +
                      by_content)
       .joined_by(',')
       .show_default();

@@ -90,6 +90,11 @@ void choose_fcs(const InputOptions& options, Bytes beginning, Reading& reading) 
   FcsGuess guess;
   auto look = [&](const Packet& packet) { guess.take(packet); };
   make_reader(reading.format, reading.options)->feed(beginning, look);
+  if (guess.may_be_cc24xx()) {
+    reading.remark =
+        "no FCS of its radio frames fits; if a TI chip put RSSI and link quality there: --fcs "
+        "cc24xx";
+  }
   if (!guess.is_cc24xx()) return;
   reading.fcs = FcsKind::kCc24xx;
   reading.remark =

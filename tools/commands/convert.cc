@@ -54,6 +54,7 @@ struct Losses {
   std::uint64_t packets = 0;
   std::uint64_t written = 0;
   std::uint64_t times = 0;
+  std::uint64_t given_times = 0;  // Packets without a time that got one.
   std::uint64_t directions = 0;
   std::uint64_t interfaces = 0;
   std::uint64_t comments = 0;
@@ -87,16 +88,22 @@ void report(const Losses& losses, const std::string& container) {
                 count, losses.written);
   };
   lost(losses.times, "times");
+  if (losses.given_times) {
+    text::print(stderr, "rubric: {} of {} packets have no time stamp and got {}, as {} needs one\n",
+                losses.given_times, losses.written,
+                container == "pcap" ? "0" : "that of the packet before them", container);
+  }
   lost(losses.directions, "directions");
   lost(losses.interfaces, "interface names");
   lost(losses.comments, "comments");
   lost(losses.sequence_numbers, "serial sequence numbers");
   lost(losses.radio_facts, "RSSI, link quality, channel or time slot");
   if (losses.more_facts) {
-    text::print(stderr,
-                "rubric: of {} packets RSSI, link quality, channel and time slot are kept, other "
-                "facts of their TAP headers are not\n",
-                losses.more_facts);
+    text::print(
+        stderr,
+        "rubric: {} of {} packets lost what their TAP headers say besides RSSI, link quality, "
+        "channel and time slot\n",
+        losses.more_facts, losses.written);
   }
   if (container == "hex" && losses.radio && losses.radio != losses.written) {
     text::print(stderr,
@@ -151,6 +158,7 @@ int run_convert(const ConvertOptions& options) {
       return output.open();
     };
     result = cli::read_packets(options.input, on_packet);
+    losses.given_times = output.given_times();
     // A mistyped name must not cost the file that would have been replaced.
     if (!result.failed || losses.packets > 0) written = output.finish();
   } catch (const std::system_error& error) {

@@ -14,6 +14,7 @@
 #include "codec/reflect/encode_number.h"
 #include "codec/reflect/registry.h"
 #include "codec/text/text.h"
+#include "tools/cli/specs.h"
 #include "tools/cli/terminal.h"
 #include "tools/encode/carriers.h"
 #include "tools/encode/members.h"
@@ -58,6 +59,15 @@ void LineEncoder::encode(const Value& line, OwnedPacket& out) {
     whole.items[frame_index_].set("dsn", Value::of_integer(next_dsn_++ & 0xff));
   }
   reader_.read(whole, out);
+}
+
+std::string LineEncoder::other_spec(const Value& line) const {
+  const Value* const name =
+      message_ || !line.is(Value::Kind::kObject) ? nullptr : line.find("message");
+  if (!name || !name->is(Value::Kind::kString)) return {};
+  if (reflect::find_type(protocol_, name->text)) return {};
+  const std::string has_it = cli::spec_with_message(protocol_, name->text);
+  return has_it.empty() ? "" : fmt::format("; {} has no {}{}", protocol_.id, name->text, has_it);
 }
 
 std::string_view LineEncoder::carrier_name() const {
@@ -156,15 +166,17 @@ void EncodedLines::encode_next(Lines& lines) {
       complain(place, fmt::format("expected a line of at most {} bytes", lines.kMaxBytes));
       continue;
     }
+    Value value;
     try {
-      encoder_.encode(parse_json(line), packet_);
+      value = parse_json(line);
+      encoder_.encode(value, packet_);
       ended_ = !on_packet_(*this, packet_, place);
     } catch (const JsonError& error) {
       complain(fmt::format("{}:{}", place, error.column()), error.what());
     } catch (const RecordError& error) {
       std::string what = error.what();
       if (as_message_ && what.starts_with("fields.")) what.erase(0, sizeof("fields.") - 1);
-      complain(place, what);
+      complain(place, what + encoder_.other_spec(value));
     }
   }
 }

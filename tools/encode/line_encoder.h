@@ -82,6 +82,9 @@ class LineEncoder {
   /// Encodes a line. Throws RecordError.
   void encode(const reflect::Value& line, OwnedPacket& out);
 
+  /// Returns which spec has the line's message, if the chosen one has not; else nothing.
+  std::string other_spec(const reflect::Value& line) const;
+
  private:
   std::string_view carrier_name() const;
   std::int64_t am_type(std::string_view carrier_name) const;

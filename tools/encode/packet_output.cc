@@ -36,6 +36,9 @@ std::string reason(std::string_view container, const Packet& packet, std::uint16
   if (packet.framing == Framing::kRadio && (container == kHdlc || container == kSf)) {
     return fmt::format("{} holds no radio frames", container);
   }
+  if (packet.cut_by_capture()) {
+    return fmt::format("{} holds no frames of which the capture has a part", container);
+  }
   if (packet.error.fault != Fault::kNone) {
     return fmt::format("{} holds no malformed frames: {}", container,
                        reflect::fault_sentence(packet.error.fault));

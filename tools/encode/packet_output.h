@@ -35,6 +35,9 @@ class PacketOutput {
   /// Returns whether the cut packet before the last one had to be left out.
   bool cut_refused() const { return cut_refused_; }
 
+  /// Returns how many packets without a time were given one (see Writer).
+  std::uint64_t given_times() const { return writer_ ? writer_->given_times() : 0; }
+
   /// Returns whether the reader still takes the output.
   bool open() const { return output_.open(); }
   /// Writes the end. Returns false if something could not be written, as cli::Output does.

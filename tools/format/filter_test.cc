@@ -175,6 +175,7 @@ const BadCase kBad[] = {
     {"message!=ack", 9, "message is never 'ack' (did you mean 'ack_join'?)"},
     {"message==updats", 9, "message is never 'updats' (did you mean 'updates'?)"},
     {"mesage==updates", 0, "unknown name 'mesage' (did you mean 'message'?)"},
+    {"lqi>0", 0, "unknown name 'lqi' (did you mean 'frame.lqi'?)"},
     {"index>0 && src.devd==4", 11, "unknown name 'src.devd'"},
     {"scr.devid==4", 0, "unknown name 'scr' (did you mean 'src'?)"},
     {"(index==1", 9, "expected ')'"},

@@ -71,7 +71,11 @@ Path::Path(std::string_view text, const Protocol& protocol) : text_(text), proto
   }
   const std::vector<std::string> known = known_names(protocol);
   const auto refuse = [&](const std::string& word) {
-    throw PathError(fmt::format("unknown name '{}'{}", word, reflect::did_you_mean(word, known)));
+    const std::string of_frame = "frame." + word;
+    throw PathError(fmt::format("unknown name '{}'{}", word,
+                                find_attribute(of_frame)
+                                    ? fmt::format(" (did you mean '{}'?)", of_frame)
+                                    : reflect::did_you_mean(word, known)));
   };
   if (components_.size() > kMaxComponents) throw PathError("path is too long");
   std::set<const Type*> elements;

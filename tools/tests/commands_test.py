@@ -228,6 +228,18 @@ class Convert(Folder):
         self.assertEqual(rubric("convert", PCAPNG, again), (0, b"", ""))
         self.assertEqual(rubric("decode", again)[1], rubric("decode", PCAPNG)[1])
 
+    def test_frames_without_times_stay_without(self):
+        again = self.folder / "x.pcapng"
+        self.assertEqual(rubric("convert", SERIAL, again), (0, b"", ""))
+        lines = [json.loads(line) for line in
+                 rubric("decode", again, "--format", "jsonl")[1].splitlines()]
+        self.assertEqual({line["time"] for line in lines}, {None})
+        err = rubric("convert", SERIAL, "-o", self.folder / "x.pcap")[2]
+        self.assertRegex(err, r"rubric: (\d+) of \1 packets have no time stamp and got 0, as pcap")
+        # Of the second interface a pcapng cannot say it.
+        err = rubric("convert", PCAPNG, SERIAL, "-o", self.folder / "both.pcapng")[2]
+        self.assertIn("have no time stamp and got that of the packet before them", err)
+
     def test_says_what_is_lost(self):
         code, out, err = rubric("convert", PCAPNG, "--format", "hex")
         self.assertEqual((code, len(out.splitlines())), (0, 151))

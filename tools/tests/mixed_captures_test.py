@@ -223,7 +223,7 @@ class Mixed(Captures):
 
     def test_what_is_left_out_is_said_once(self):
         err = self.frames("any_zep.pcap")[1]
-        self.assertEqual(err.count("12 of 60 packets are no ZEP packets (UDP port 17754)"), 1)
+        self.assertEqual(err.count("12 of 60 packets are not ZEP packets (UDP port 17754)"), 1)
         err = self.frames("with_wifi.pcapng")[1]
         self.assertEqual(err.count("link type 127 (802.11 with radiotap header) is not read: 30 of "
                                    "60 packets are left out"), 1)
@@ -279,13 +279,27 @@ class Mixed(Captures):
         self.assertEqual(gzip.decompress(packed)[:2], b"\x4d\x3c")
 
     def test_facts_pass_through_json(self):
-        lines = rubric("decode", "--format", "jsonl", self.path / "tap.pcapng")[1]
-        again = rubric("encode", "--spec", "blink_to_radio", "--format", "pcapng", "-o",
-                       self.path / "again.pcapng", stdin=lines.encode())
-        self.assertEqual(again[0], 0, again[2])
-        frames = [one["frame"] for one in map(json.loads, lines.splitlines())]
-        self.assertIn("slot", frames[0])
-        self.assertEqual([one["frame"] for one in self.frames("again.pcapng")[0]], frames)
+        for name, fact in (("tap.pcapng", "slot"), ("cc24xx.pcap", "lqi")):
+            lines = rubric("decode", "--format", "jsonl", self.path / name)[1]
+            again = rubric("encode", "--spec", "blink_to_radio", "--format", "pcapng", "-o",
+                           self.path / "again.pcapng", stdin=lines.encode())
+            self.assertEqual(again[0], 0, again[2])
+            frames = [one["frame"] for one in map(json.loads, lines.splitlines())]
+            self.assertIn(fact, frames[0])
+            self.assertEqual([one["frame"] for one in self.frames("again.pcapng")[0]], frames)
+        code, _, err = rubric("encode", stdin=lines.encode())
+        self.assertEqual(code, 66)
+        self.assertIn("; rubicon has no blink_to_radio_msg; blink_to_radio has it: --spec "
+                      "blink_to_radio\n", err)
+
+    def test_few_frames_of_a_ti_chip(self):
+        """Too few to know that no FCS is there; but all alike."""
+        whole = (self.path / "cc24xx.pcap").read_bytes()
+        at = 24
+        for _ in range(4):
+            at += 16 + struct.unpack_from("<I", whole, at + 8)[0]
+        (self.path / "few.pcap").write_bytes(whole[:at])
+        self.assertIn("--fcs cc24xx", rubric("decode", self.path / "few.pcap")[2])
 
     def test_facts_are_filtered_and_counted(self):
         frames, _ = self.frames("tap.pcapng", "--filter", "frame.channel==12 && frame.rssi < -51")
@@ -413,7 +427,7 @@ class Text(unittest.TestCase):
         code, out, err = self.decoded(log, "--format", "jsonl")
         self.assertEqual((code, len(out.splitlines())), (0, 1), err)
         self.assertIn("3 of its lines hold no packet; the first is line 2; line 3 has hex text "
-                      "after 'mote1>', which is no time stamp that is known", err)
+                      "after 'mote1>', which is not a known time stamp", err)
 
     def test_mistakes_name_their_line(self):
         for text, where in ((f"{self.BLINK}\n# so far\n00 FF F\n", "line 3, character 8"),
@@ -494,7 +508,7 @@ class Specs(unittest.TestCase):
         text = Text.BLINK.encode()
         code, out, err = rubric("decode", "--format", "jsonl", stdin=text)
         self.assertEqual((code, json.loads(out)["message"]), (0, "blink_to_radio_msg"))
-        self.assertIn("stdin: read by the spec blink_to_radio, which fits 1 of its first 1 "
+        self.assertIn("stdin: read by the spec blink_to_radio, which decodes 1 of its first 1 "
                       "messages wholly, rubicon 0", err)
         code, out, err = rubric("decode", "--format", "jsonl", "--spec", "rubicon", stdin=text)
         self.assertEqual(json.loads(out)["message"], "rssi_beacon")

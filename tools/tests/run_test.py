@@ -223,7 +223,7 @@ islands:
         device = sink.waits_for(rb"(serial@/dev/\S+)")
         base = self.started("base-station", "--island", "12", "--sink", device, "--app", "-")
         base.waits_for(rb"(connected)")
-        self.assertEqual(sink.waits_for(rb"made this island (\d+), which was 11"), "12")
+        self.assertEqual(sink.waits_for(rb"changed the island to (\d+), which was 11"), "12")
         base.call("send", dest="12:1", app_id=10, reliable=True, data="0a")
         number = base.event("send_result", success=True)["seq_num"]
         sink.event("received", src="12:65533", data="0a")

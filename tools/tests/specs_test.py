@@ -453,6 +453,12 @@ class File(Folder):
             frame = json.loads(done.stdout)
             self.assertEqual((frame["message"], frame["am"]["src"]), ("pair", 3))
             self.assertEqual(frame["fields"], {"a": 1, "b": 2})
+        inner = self.file(message + "    types: {inner: {seq: [{id: c, type: u1}]}, empty: {}}\n"
+                                    "    enums: {colors: {1: red}}\n"
+                                    "    instances: {twice: {value: a * 2}}\n", "inner.ksy")
+        done = rubric("decode", "--spec", inner, "--format", "jsonl",
+                      stdin="00 FFFF 0003 03 22 2A 01 0002")
+        self.assertEqual(json.loads(done.stdout)["message"], "pair", done.stderr)
         done = rubric("encode", "--spec", file, "--as", "pair", "--format", "hex",
                       stdin='{"a":1,"b":2}')
         self.assertEqual(done.stdout, "00 FF FF 00 00 03 00 2A 01 00 02\n")

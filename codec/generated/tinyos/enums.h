@@ -18,7 +18,7 @@ enum class FrameControl : uint16_t {
 enum class FrameControlPart : uint16_t {
   kType = 7,
   kAckRequest = 32,
-  kShape = 0xcc4f,
+  kShape = 0xcf4f,
 };
 
 enum class SerialKind : uint8_t {

@@ -43,7 +43,7 @@ constexpr EnumTable kFrameControl{"frame_control", of::frame_control::kEntries, 
 namespace of {
 namespace frame_control_part {
 constexpr EnumEntry kEntries[] = {
-    {7, "type"}, {32, "ack_request"}, {52303, "shape"}};
+    {7, "type"}, {32, "ack_request"}, {53071, "shape"}};
 }  // namespace frame_control_part
 }  // namespace of
 namespace enums {

@@ -74,12 +74,7 @@ std::string html_report(const Story& story, const TextOptions& options, std::str
   out +=
       "</style>\n</head>\n<body>\n<header class=\"top\"><h1>Rubric <span>check</span></h1>"
       "</header>\n<main id=\"main\">\n";
-  out += fmt::format("<h2>Verdict: {}, {}{}</h2>\n", verdict_name(story.outcome.verdict),
-                     story.outcome.as_expected() ? "as expected" : "not as expected",
-                     story.outcome.input_missing ? ", but input is damaged or missing" : "");
-  out += fmt::format("<p>{} frames, {} rules exercised, {} findings, {} unexpected failures.</p>\n",
-                     found.frames, found.exercised.size(), found.findings.size(),
-                     story.outcome.unexpected_failures);
+  out += fmt::format("<h2>Verdict: {}</h2>\n", text_verdict(story));
   out += "<ul>\n";
   for (const std::string& file : story.run.files) {
     out += fmt::format("<li><code>{}</code></li>\n", text::xml_text(file));
@@ -92,8 +87,8 @@ std::string html_report(const Story& story, const TextOptions& options, std::str
   for (const std::size_t i : in_order(story)) out += finding_html(story, i, options);
   out += "<h2>Rules that were kept</h2>\n<p>";
   for (const auto& [id, count] : found.exercised) {
-    out += fmt::format("<code>{}</code> {} times\n", text::xml_text(reflect::requirement(id).id),
-                       count);
+    out += fmt::format("<code>{}</code> {}\n", text::xml_text(reflect::requirement(id).id),
+                       text::counted(count, "time"));
   }
   return out + "</p>\n</main>\n</body>\n</html>\n";
 }

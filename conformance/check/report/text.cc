@@ -307,37 +307,9 @@ class TextReport {
   }
 
   void sum() {
-    std::map<Severity, std::uint64_t> counts;
-    std::uint64_t expected = 0;
-    for (std::size_t i = 0; i < story_.report.findings.size(); ++i) {
-      const Severity severity = story_.report.findings[i].severity;
-      ++(is_expected(i) ? expected : counts[severity]);
-    }
-    const Outcome& outcome = story_.outcome;
-    std::string text = text::counted(counts[Severity::kFail], "failure");
-    if (!story_.expected.entries.empty()) {
-      text += fmt::format(", {} expected, {} not true", text::counted(expected, "known failure"),
-                          text::counted(outcome.broken_expectations, "expectation"));
-    }
-    for (const Severity severity :
-         {Severity::kWeak, Severity::kStray, Severity::kInconclusive, Severity::kNote}) {
-      if (counts[severity] == 0) continue;
-      const bool note = severity == Severity::kNote;
-      text += ", " + (note ? text::counted(counts[severity], "note")
-                           : fmt::format("{} {}", counts[severity], severity_name(severity)));
-    }
-    text += fmt::format("; {} judged, {} exercised", text::counted(story_.report.frames, "frame"),
-                        text::counted(story_.report.exercised.size(), "rule"));
-    std::string verdict(verdict_name(outcome.verdict));
-    if (outcome.verdict == check::Verdict::kFail && outcome.as_expected()) {
-      verdict += " as expected";
-    } else if (outcome.nothing_judged) {
-      verdict += ", nothing could be judged";
-    }
-    if (outcome.input_missing) verdict += ", but input is damaged or missing";
-    const bool good = outcome.exit_code() == 0;
     out_ += '\n';
-    styled_line(good ? "1;32" : "1;31", "Verdict:", fmt::format("{}: {}.", verdict, text));
+    styled_line(story_.outcome.exit_code() == 0 ? "1;32" : "1;31",
+                "Verdict:", text_verdict(story_));
   }
 
   const Story& story_;
@@ -351,6 +323,38 @@ class TextReport {
 
 std::string text_report(const Story& story, const TextOptions& options) {
   return TextReport(story, options).text();
+}
+
+std::string text_verdict(const Story& story) {
+  std::map<Severity, std::uint64_t> counts;
+  std::uint64_t expected = 0;
+  const Outcome& outcome = story.outcome;
+  for (std::size_t i = 0; i < story.report.findings.size(); ++i) {
+    const bool known = outcome.expected_by[i] != kUnexpected;
+    ++(known ? expected : counts[story.report.findings[i].severity]);
+  }
+  std::string text = text::counted(counts[Severity::kFail], "failure");
+  if (!story.expected.entries.empty()) {
+    text += fmt::format(", {} expected, {} not true", text::counted(expected, "known failure"),
+                        text::counted(outcome.broken_expectations, "expectation"));
+  }
+  for (const Severity severity :
+       {Severity::kWeak, Severity::kStray, Severity::kInconclusive, Severity::kNote}) {
+    if (counts[severity] == 0) continue;
+    const bool note = severity == Severity::kNote;
+    text += ", " + (note ? text::counted(counts[severity], "note")
+                         : fmt::format("{} {}", counts[severity], severity_name(severity)));
+  }
+  text += fmt::format("; {} judged, {} exercised", text::counted(story.report.frames, "frame"),
+                      text::counted(story.report.exercised.size(), "rule"));
+  std::string verdict(verdict_name(outcome.verdict));
+  if (outcome.verdict == check::Verdict::kFail && outcome.as_expected()) {
+    verdict += " as expected";
+  } else if (outcome.nothing_judged) {
+    verdict += ", nothing could be judged";
+  }
+  if (outcome.input_missing) verdict += ", but input is damaged or missing";
+  return fmt::format("{}: {}.", verdict, text);
 }
 
 std::string text_finding(const Story& story, std::size_t index, const TextOptions& options) {

@@ -36,6 +36,9 @@ struct TextOptions : text::TextStyle {
 /// expectations, and the sum.
 std::string text_report(const Story& story, const TextOptions& options);
 
+/// Returns the verdict, and what was counted, in a sentence.
+std::string text_verdict(const Story& story);
+
 /// Returns one finding of a story: a line, wrapped to the width; in full with `verbose`.
 std::string text_finding(const Story& story, std::size_t index, const TextOptions& options);
 

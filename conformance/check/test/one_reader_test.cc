@@ -420,6 +420,16 @@ TEST(OneReader, Of100000GeneratedFrames) {
   }
 }
 
+// Without a DSN, or with information elements (IEEE 802.15.4-2015), all that follows lies elsewhere.
+TEST(OneReader, AFrameOfTheNewerHeaderIsOpaque) {
+  constexpr const char* kAir =
+      "41 a9 22 00 01 00 02 00 3f 0e 02 58 01 00 43 01\n"
+      "41 aa 01 22 00 01 00 05 00 3f 0e 03 e8 02 00 07 01\n";
+  Comparer all;
+  all.bytes(kAir, InputFormat::kHex, Framing::kRadio);
+  EXPECT_EQ(all.count("opaque"), 2);
+}
+
 // A frame with the security bit says nothing to who has no key: neither does its plain look.
 TEST(OneReader, ASecuredFrameIsOpaque) {
   constexpr const char* kAir =

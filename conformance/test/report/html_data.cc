@@ -36,6 +36,7 @@ Json implementation(const SuiteRun& run, std::size_t index) {
   out["rules"] = {{"all", totals.all},
                   {"kept", totals.kept},
                   {"broken", totals.broken},
+                  {"suspected", totals.suspected},
                   {"undecided", totals.undecided},
                   {"untried", totals.untried}};
   return out;

@@ -62,4 +62,6 @@ types:
     seq:
       - id: buffer
         size-eos: true
+        type: strz
+        encoding: ASCII
         doc: Characters, filled up with zeros.

@@ -253,7 +253,7 @@ std::string text_report(const Counters& counters) {
   out += time_line_text(counters.time_line());
   out += faults_text(counters);
   for (const auto& [kind, count] : counters.notes()) {
-    out += fmt::format("\nnoted {} times: {}", count, reflect::note_name(kind));
+    out += fmt::format("\nnoted {}: {}", text::counted(count, "time"), reflect::note_name(kind));
   }
   if (!counters.notes().empty()) out += '\n';
   return text::harmless(out, text::Keep::kLines);

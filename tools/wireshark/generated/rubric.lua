@@ -6,7 +6,7 @@
 local enums, masks, types, rules = {}, {}, {}, {}
 
 enums["tinyos.frame_control"] = {[2] = "ack", [34881] = "data", [34913] = "data_ack_request"}
-enums["tinyos.frame_control_part"] = {[7] = "type", [32] = "ack_request", [52303] = "shape"}
+enums["tinyos.frame_control_part"] = {[7] = "type", [32] = "ack_request", [53071] = "shape"}
 enums["tinyos.serial_kind"] = {[67] = "ack", [68] = "packet_ack", [69] = "packet_noack", [255] = "unknown"}
 enums["tinyos.dispatch"] = {[0] = "active_message", [1] = "cc1000", [2] = "ieee802154", [255] = "unknown"}
 types["tinyos.serial_frame"] = {

@@ -19,8 +19,8 @@ function showRun() {
       ['pass', 'Everything that the case asks for was seen.'],
       ['weak', 'Only rules that say SHOULD were broken.'],
       ['inconclusive', 'Nothing was broken, but not all of it could be seen.'],
-      ['fail', 'A rule was broken.'],
-      ['error', 'The implementation or its adapter broke: it died, hung, or made no sense.'],
+      ['fail', 'A rule was broken; or the implementation died, hung, or made no sense.'],
+      ['error', 'The implementation did not start, or the case makes no sense.'],
       ['skip', 'The implementation says that it cannot do what the case needs.'],
     ].map(([name, text]) =>
       h('div', {}, h('dt', {}, h('span', { class: verdictClass(name) }, name)),

@@ -57,6 +57,7 @@ function bar(counts, total) {
 function ruleWords(rules) {
   const parts = [`${rules.kept} of ${count(rules.all, 'rule')} kept`];
   if (rules.broken) parts.push(`${rules.broken} broken`);
+  if (rules.suspected) parts.push(`${rules.suspected} suspected`);
   if (rules.undecided) parts.push(`${rules.undecided} undecided`);
   if (rules.untried) parts.push(`${rules.untried} not tried`);
   return parts.join(', ');

@@ -7,7 +7,7 @@ package rubric.wire.tinyos;
 public final class FrameControlPart {
   public static final int TYPE = 7;
   public static final int ACK_REQUEST = 32;
-  public static final int SHAPE = 52303;
+  public static final int SHAPE = 53071;
 
   private FrameControlPart() {}
 }
