@@ -64,7 +64,7 @@ SEEDS = {
     "pcap": lambda: converted("pcap", "--only", "radio"),
     "pcapng": lambda: files("spec/captures/firmware/*.pcapng"),
     "gz": lambda: (gzip.compress(one, mtime=0) for one in SEEDS["pcapng"]()),
-    "rtr": lambda: files("conformance/cases/*.rtr", "conformance/check/test/testdata/*.rtr"),
+    "rtr": lambda: files("conformance/cases/*.rtr", "conformance/check/tests/testdata/*.rtr"),
     "sf": lambda: files("spec/captures/basestation/*.sfstream"),
     "yaml": lambda: files("tools/expect/*.check.yaml"),
 }

@@ -4,8 +4,8 @@
 #include <string>
 #include <type_traits>
 
-#include "codec/codec_test/every_view.h"
 #include "codec/reflect/decode.h"
+#include "codec/tests/every_view.h"
 
 namespace rubric::reflect {
 

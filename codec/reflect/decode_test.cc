@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "codec/containers/test/testing.h"
+#include "codec/containers/tests/testing.h"
 #include "codec/generated/oscilloscope/tables.h"
 #include "codec/generated/rubicon/tables.h"
 

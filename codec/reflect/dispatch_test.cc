@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "codec/containers/test/testing.h"
-#include "codec/generate/frame_generator.h"
-#include "codec/generate/values.h"
+#include "codec/containers/tests/testing.h"
+#include "codec/frame_generator/frame_generator.h"
+#include "codec/frame_generator/values.h"
 #include "codec/generated/rubicon/messages.h"
 #include "codec/reflect/compare_view.h"
 #include "codec/runtime/hdlc.h"

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "codec/containers/test/testing.h"
-#include "codec/generate/frame_generator.h"
-#include "codec/generate/routes.h"
+#include "codec/containers/tests/testing.h"
+#include "codec/frame_generator/frame_generator.h"
+#include "codec/frame_generator/routes.h"
 #include "codec/reflect/encode.h"
 #include "codec/reflect/registry.h"
 

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "codec/containers/test/testing.h"
+#include "codec/containers/tests/testing.h"
 #include "spec/compiler/emit/tables/built_tables.h"
 #include "spec/compiler/load/load.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <tuple>
 
-#include "codec/containers/test/testing.h"
+#include "codec/containers/tests/testing.h"
 #include "codec/generated/rubicon/tables.h"
 
 namespace rubric::reflect {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "codec/generate/random.h"
+#include "codec/frame_generator/random.h"
 #include "conformance/machine/ticks.h"
 
 namespace rubric::simulate {

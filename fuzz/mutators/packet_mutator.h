@@ -9,7 +9,7 @@
 
 #include "codec/containers/reader.h"
 #include "codec/containers/writer.h"
-#include "codec/generate/frame_generator.h"
+#include "codec/frame_generator/frame_generator.h"
 #include "codec/reflect/frame.h"
 
 namespace rubric::fuzz {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-#include "codec/containers/test/testing.h"
+#include "codec/containers/tests/testing.h"
 #include "codec/generated/rubicon/messages.h"
 #include "codec/reflect/registry.h"
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "codec/generate/frame_generator.h"
+#include "codec/frame_generator/frame_generator.h"
 #include "conformance/selftest/scripts/script.h"
 
 namespace rubric::fuzz {

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "codec/containers/test/testing.h"
+#include "codec/containers/tests/testing.h"
 #include "codec/reflect/decode.h"
 #include "fuzz/support/require.h"
 #include "tools/encode/members.h"

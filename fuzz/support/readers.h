@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "codec/containers/test/testing.h"
+#include "codec/containers/tests/testing.h"
 
 namespace rubric::fuzz {
 

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "codec/codec_test/every_view.h"
 #include "codec/reflect/decode.h"
 #include "codec/reflect/registry.h"
+#include "codec/tests/every_view.h"
 
 namespace rubric::fuzz {
 

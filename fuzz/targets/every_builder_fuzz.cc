@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "codec/codec_test/every_view.h"
+#include "codec/tests/every_view.h"
 #include "fuzz/support/every_builder.h"
 #include "fuzz/support/require.h"
 

@@ -22,7 +22,7 @@ install(TARGETS ${libraries} rubric_conformance EXPORT rubric_conformance
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}/rubric COMPONENT dev)
 install(DIRECTORY codec conformance DESTINATION ${include_dir} COMPONENT dev
   FILES_MATCHING PATTERN "*.h" PATTERN "adapters" EXCLUDE PATTERN "lawful_traffic" EXCLUDE
-  PATTERN "codec_test" EXCLUDE PATTERN "codec_bench" EXCLUDE PATTERN "*fixture.h" EXCLUDE
+  PATTERN "tests" EXCLUDE PATTERN "bench" EXCLUDE PATTERN "*fixture.h" EXCLUDE
   PATTERN "*testing*.h" EXCLUDE PATTERN "cases" EXCLUDE PATTERN "promela" EXCLUDE
   PATTERN "scripts" EXCLUDE)
 file(GLOB node_examples CONFIGURE_DEPENDS conformance/node/examples/*.cc)

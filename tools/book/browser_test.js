@@ -8,7 +8,7 @@ const os = require('node:os');
 const path = require('node:path');
 const url = require('node:url');
 const { accessible, launch, open } =
-  require('../../conformance/test/report/html/test/browser.js');
+  require('../../conformance/test/report/html/tests/browser.js');
 
 const kLoadMsMax = 10000;  // On a machine that does much else.
 const kPhone = { width: 360, height: 740 };

@@ -8,7 +8,7 @@
 #include <mutex>
 #include <utility>
 
-#include "codec/generate/routes.h"
+#include "codec/frame_generator/routes.h"
 #include "codec/reflect/combined.h"
 #include "codec/reflect/registry.h"
 #include "codec/reflect/requirements.h"

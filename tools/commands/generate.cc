@@ -11,8 +11,8 @@
 
 #include "codec/containers/pcapng_format.h"
 #include "codec/containers/writer.h"
-#include "codec/generate/framer.h"
-#include "codec/generate/known_protocols.h"
+#include "codec/frame_generator/framer.h"
+#include "codec/frame_generator/known_protocols.h"
 #include "codec/reflect/fault_text.h"
 #include "codec/reflect/suggest.h"
 #include "codec/text/json.h"

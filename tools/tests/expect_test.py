@@ -10,7 +10,7 @@ from testing import ROOT, rubric
 
 LISTS = ROOT / "tools/expect"
 CAPTURES = ROOT / "spec/captures"
-EVENTS = ROOT / "conformance/check/test/testdata"
+EVENTS = ROOT / "conformance/check/tests/testdata"
 
 # What the captures and the sources of release 1.0 show to be broken; weak ones among them.
 BROKEN = {

@@ -248,7 +248,7 @@ class Install(unittest.TestCase):
                  "sniffer.pcapng": firmware / "b_reliable.pcapng",
                  "mote.serial.bin": firmware / "b_reliable.serial.bin",
                  "sink.serial.bin": firmware / "b_reliable.serial.bin",
-                 "app.rtr": ROOT / "conformance/check/test/testdata/b_reliable.app.rtr",
+                 "app.rtr": ROOT / "conformance/check/tests/testdata/b_reliable.app.rtr",
                  "j4.rtr": ROOT / "conformance/cases/j4.rtr",
                  "small.rtr": ROOT / "conformance/cases/j4.rtr",
                  "no_fail.rtr": ROOT / "conformance/cases/j4.rtr",

@@ -17,7 +17,7 @@ ALLOWED = {
     "codec/generated": ["codec/runtime", "codec/generated", "codec/reflect/schema.h"],
     "codec/containers": ["codec/runtime", "codec/containers"],
     "codec/reflect": ["codec/runtime", "codec/generated", "codec/containers", "codec/reflect",
-                      "codec/codec_test"],
+                      "codec/tests"],
     "codec": ["codec"],
     "conformance/machine": ["codec/runtime", "codec/generated", "conformance/machine",
                             "conformance/generated/profiles.h"],
@@ -60,7 +60,7 @@ COMMAND_LINE = re.compile(r"#include <CLI/")
 # reflection tables, both made from spec/wire. What reads or writes its bytes by hand looks so:
 WIRE_BY_HAND = [
     (re.compile(r"\b(?:load|store)_(?:u8|[bl]e(?:16|32))\("), "a number of the wire by hand"),
-    (re.compile(r"\b0x(?:88[046][01]|cc[04][0f])\b|\b0x[46]1\b.*\b0x88\b", re.I),
+    (re.compile(r"\b0x(?:88[046][01]|c[cf][04][0f])\b|\b0x[46]1\b.*\b0x88\b", re.I),
      "a frame control field of 802.15.4"),
     (re.compile(r"[=(,{] ?0x3f\b", re.I), "the network byte of an I-frame"),
     (re.compile(r"\bconstexpr [\w:]+ k\w*(?:Offset|At|HeaderBytes|HeadBytes) ?= ?[1-9]"),
@@ -86,8 +86,8 @@ HAND_MADE = {
     "codec/containers/": "framing: capture files, check sums, records",
     "codec/reflect/decode.cc": "loads what the tables say",
     "codec/reflect/encode_number.cc": "stores what the tables say",
-    "codec/codec_bench/": "compares views with hand-written code",
-    "codec/codec_test/": "tests",
+    "codec/bench/": "compares views with hand-written code",
+    "codec/tests/": "tests",
     "conformance/selftest/lawful_traffic/": "independent of what it tests, see its README",
     "conformance/adapters/firmware/bench/": "records between a board and its bench, not frames",
     "conformance/adapters/firmware/host/bridge.cc": "the same records",

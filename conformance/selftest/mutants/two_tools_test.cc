@@ -40,7 +40,7 @@
 #include "conformance/test/report/case_files.h"
 #include "conformance/test/suite/cases.h"
 #include "conformance/test/suite/run.h"
-#include "conformance/test/suite/test/testing.h"
+#include "conformance/test/suite/tests/testing.h"
 #include "conformance/test/targets/attachment.h"
 #include "conformance/trace/headers.h"
 
@@ -366,7 +366,7 @@ TEST(TwoTools, EachRuleIsNamedInSomeLogOrListed) {
       }
     }
   }
-  std::ifstream logs("conformance/check/test/testdata/whole_logs.txt");
+  std::ifstream logs("conformance/check/tests/testdata/whole_logs.txt");
   for (std::string line; std::getline(logs, line);) {
     if (!line.starts_with("== ")) continue;
     std::istringstream rules(line.substr(3, line.find(':') - 3));

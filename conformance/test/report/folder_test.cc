@@ -13,7 +13,7 @@
 #include "codec/text/files.h"
 #include "conformance/test/report/folder_testing.h"
 #include "conformance/test/suite/run.h"
-#include "conformance/test/suite/test/testing.h"
+#include "conformance/test/suite/tests/testing.h"
 
 namespace rubric::suite {
 namespace {

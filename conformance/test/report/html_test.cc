@@ -20,7 +20,7 @@
 #include "conformance/test/report/frame_view.h"
 #include "conformance/test/report/log_lines.h"
 #include "conformance/test/suite/run.h"
-#include "conformance/test/suite/test/testing.h"
+#include "conformance/test/suite/tests/testing.h"
 #include "conformance/trace/parse.h"
 #include "conformance/trace/print.h"
 

@@ -1,0 +1,196 @@
+// One air or line that was recorded twice beside others gives the findings of one recording.
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "conformance/check/input/duplicates.h"
+#include "conformance/check/tests/align_testing.h"
+
+namespace rubric::check::align_twice_test {
+namespace {
+
+// Each lasts longer than the clocks of two sniffers may differ; else the two share no time.
+constexpr const char* kCaptures[] = {"a2_join_data_sensible_start",
+                                     "a_join_data",
+                                     "b_reliable",
+                                     "c_two_islands",
+                                     "d1_lose_request",
+                                     "e1_simultaneous_join",
+                                     "f_synaptic",
+                                     "h4_stale_bytes",
+                                     "h10_hdlc_escape_and_bad_serial"};
+constexpr double kShifts_s[] = {0, 0.004, -0.004, 0.03, -0.03};
+
+struct Outcome {
+  std::vector<std::string> facts;  // About lines, as if each sniffer were the first.
+  std::size_t loose = 0;
+  Report report;
+};
+
+Outcome outcome_of(const std::vector<Part>& parts) {
+  RunReader reader;
+  std::string error;
+  for (const Part& part : parts) EXPECT_TRUE(reader.add_bytes(part.name, part.bytes, error));
+  check::Run run = reader.finish();
+  Outcome out;
+  for (const std::string& fact : run.facts) {
+    if (!fact.starts_with("serial")) continue;
+    const std::size_t second = fact.find("second");
+    out.facts.push_back(fact);
+    if (second != fact.npos) out.facts.back().replace(second, 6, "radio");
+  }
+  out.loose = run.loose.size();
+  EXPECT_TRUE(drop_duplicates(run, {}, error)) << error;
+  out.report = judge(run, {});
+  return out;
+}
+
+void expect_same(const Outcome& twice, const Outcome& once, const std::string& what) {
+  EXPECT_EQ(twice.facts, once.facts) << what;
+  EXPECT_EQ(twice.loose, once.loose) << what;
+  EXPECT_EQ(findings_of(twice.report, nullptr, false), findings_of(once.report, nullptr, false))
+      << what;
+  EXPECT_EQ(twice.report.exercised, once.report.exercised) << what;
+}
+
+// Keeps some frames of a file, by their numbers from 1.
+std::string frames_of(const std::string& bytes,
+                      const std::function<bool(std::size_t number)>& taken) {
+  std::string out;
+  PcapngWriter writer;
+  writer.begin(out);
+  const std::unique_ptr<Reader> reader = make_reader(InputFormat::kPcapng, {});
+  std::size_t number = 0;
+  auto take = [&](const Packet& packet) {
+    if (!taken(++number)) return;
+    writer.write(packet, reader->interfaces()[packet.interface_id].name, out);
+  };
+  reader->feed({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()},
+               PacketSink(take));
+  reader->finish(PacketSink(take));
+  writer.finish(out);
+  return out;
+}
+
+// Expects two sniffers of the air, one of which may miss frames, to count as one.
+void expect_one_air(const std::string& name, const SerialClock& clock) {
+  const std::string bytes = capture(name);
+  const Apart apart = take_apart(bytes, clock);
+  for (const double shift_s : kShifts_s) {
+    for (const double lost : {0.0, 0.2, 0.6}) {
+      SerialClock other = clock;
+      other.base_s += shift_s;
+      other.lost = lost;
+      Part second = take_apart(bytes, other).parts[0];
+      second.name = "second";
+      const Outcome once = outcome_of(apart.parts);
+      std::vector<Part> parts = apart.parts;
+      const std::string what =
+          name + ", " + std::to_string(shift_s) + " s, lost " + std::to_string(lost);
+      parts.insert(parts.begin() + 1, second);
+      expect_same(outcome_of(parts), once, what);
+      if (lost == 0) continue;  // If both have the same, the first counts.
+      std::swap(parts[0], parts[1]);
+      expect_same(outcome_of(parts), once, what + " by the first");
+    }
+  }
+}
+
+TEST(AlignTwice, TwoSniffersAndLinesWithoutStamps) {
+  SerialClock clock;
+  clock.stamps = false;
+  std::size_t loose = 0;
+  for (const char* name : kCaptures) {
+    expect_one_air(name, clock);
+    loose += outcome_of(take_apart(capture(name), clock).parts).loose;
+  }
+  EXPECT_GT(loose, 200U);
+}
+
+TEST(AlignTwice, TwoSniffersAndALineOnAnotherClock) {
+  SerialClock clock;
+  clock.ahead_s = -777;
+  clock.drift_ppm = 40;
+  for (const char* name : kCaptures) expect_one_air(name, clock);
+}
+
+// One sniffer takes over from another one while that still listens.
+TEST(AlignTwice, ASnifferThatTakesOver) {
+  SerialClock clock;
+  clock.stamps = false;
+  const Apart apart = take_apart(capture("a_join_data"), clock);
+  const Outcome once = outcome_of(apart.parts);
+  std::vector<Part> parts = apart.parts;
+  const std::string air = parts[0].bytes;
+  const std::size_t all = parts[0].frames.size() - 1;
+  parts.insert(parts.begin() + 1, Part{"second", {}, {0}});
+  parts[0].bytes = frames_of(air, [&](std::size_t number) { return number <= all * 3 / 5; });
+  parts[1].bytes = frames_of(air, [&](std::size_t number) { return number >= all * 2 / 5; });
+  const Outcome twice = outcome_of(parts);
+  EXPECT_EQ(twice.facts, once.facts);
+  EXPECT_EQ(twice.loose, once.loose);
+  EXPECT_EQ(twice.report.exercised, once.report.exercised);
+}
+
+// Each of two sniffers misses what the other one has: the line is in order with both together.
+TEST(AlignTwice, TwoSniffersThatBothMissFrames) {
+  for (const char* name : kCaptures) {
+    SerialClock clock;
+    clock.stamps = false;
+    const Apart apart = take_apart(capture(name), clock);
+    const check::Run once = put_together(apart);
+    for (const double shift_s : {0.0, 0.001, -0.001}) {
+      clock.base_s = SerialClock{}.base_s + shift_s;
+      Apart twice = apart;
+      Part second{"second", take_apart(capture(name), clock).parts[0].bytes, {0}};
+      Part& first = twice.parts[0];
+      first.bytes = frames_of(first.bytes, [](std::size_t i) { return i % 3 != 0; });
+      second.bytes = frames_of(second.bytes, [](std::size_t i) { return i % 3 != 1; });
+      twice.parts.insert(twice.parts.begin() + 1, second);
+      const check::Run run = put_together(twice);
+      EXPECT_EQ(aligned_fact(run), aligned_fact(once)) << name << ", " << shift_s << " s";
+      EXPECT_EQ(run.loose.size(), once.loose.size()) << name << ", " << shift_s << " s";
+    }
+  }
+}
+
+// Only the line of one sink has no stamps; the other sink's line shows nothing of it.
+TEST(AlignTwice, ALineWithStampsBesideOneWithout) {
+  SerialClock raw;
+  raw.stamps = false;
+  const std::string bytes = capture("c_two_islands");
+  const Apart apart = take_apart(bytes, raw);
+  ASSERT_EQ(apart.parts.size(), 3U);
+  for (const std::size_t i : {1U, 2U}) {
+    const Part& line = apart.parts[i];
+    const Part timed = only_interface(take_apart(bytes, {}).whole, apart.parts[3 - i].name);
+    const Outcome alone = outcome_of({apart.parts[0], line});
+    const Outcome beside = outcome_of({apart.parts[0], timed, line});
+    EXPECT_EQ(beside.loose, alone.loose) << line.name;
+    EXPECT_GT(beside.loose, 0U) << line.name;
+  }
+}
+
+// A line without stamps that is given twice is ordered as it is alone.
+TEST(AlignTwice, OneLineTwice) {
+  SerialClock raw;
+  raw.stamps = false;
+  for (const char* name : kCaptures) {
+    std::vector<Part> parts = take_apart(capture(name), raw).parts;
+    if (parts.size() != 2) continue;
+    const Outcome once = outcome_of(parts);
+    parts.push_back(parts[1]);
+    parts.back().name = "again";
+    const Outcome twice = outcome_of(parts);
+    EXPECT_EQ(twice.facts, once.facts) << name;
+    EXPECT_EQ(findings_of(twice.report, nullptr, false), findings_of(once.report, nullptr, false))
+        << name;
+    EXPECT_EQ(twice.report.exercised, once.report.exercised) << name;
+  }
+}
+
+}  // namespace
+}  // namespace rubric::check::align_twice_test

@@ -1,0 +1,406 @@
+// Captures of lawful nodes that were blamed, and of faulty ones that were not, each beside its
+// like.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "codec/reflect/requirements.h"
+#include "conformance/check/judge/judge.h"
+#include "conformance/check/tests/testing.h"
+
+namespace rubric::check::captures_test {
+namespace {
+
+using machine::kNullDevid;
+
+constexpr auto kSetIsland = static_cast<std::uint8_t>(rubicon::CommandCode::kSetIslandId);
+
+// Returns the rules of all but notes, each with the letter of its severity: "F:N9-SET I:J5-STOP".
+std::string found_in(const Script& script, bool complete = true) {
+  Options options;
+  options.sniffer_complete = options.start_cold = complete;
+  std::string out;
+  for (const Finding& finding : judge(script.run, options).findings) {
+    if (finding.severity == Severity::kNote) continue;
+    const char* const id = reflect::requirement(finding.requirement).id;
+    out += out.empty() ? "" : " ";
+    out += "NWSIF"[static_cast<std::size_t>(finding.severity)];
+    out += ":" + std::string(id);
+  }
+  return out;
+}
+
+NetFields message(machine::Address src, machine::Address dest, std::uint16_t seq_num,
+                  std::uint8_t reliable = 0) {
+  NetFields net;
+  net.src = src;
+  net.dest = dest;
+  net.seq_num = seq_num;
+  net.reliable = reliable;
+  return net;
+}
+NetFields update(std::uint16_t mote, std::uint16_t seq_num) {
+  return message({11, mote}, {11, kNullDevid}, seq_num);
+}
+void forwards(Script& script, double ms, std::uint16_t mote, std::uint16_t seq_num) {
+  script.net(ms, mote, 1, update(mote, seq_num)).up(ms + 12, update(mote, seq_num).forwarded());
+}
+
+// A base station tells the sink its island at `ms`.
+void set_island(Script& script, double ms, std::uint16_t island, bool confirmed = true) {
+  Payload config{kSetIsland};
+  put16(config, island);
+  script.serial(ms, true, am::kConfig, config).confirm(confirmed);
+}
+
+TEST(Captures, AReportIsLateOrMissing) {
+  for (const double ms : {320.0, 2000.0}) {  // It waited that long (decision 125).
+    Script script;
+    script.request(0, 2, 100).reply(10, 11, 2, 100, 10).ack_join(20, 11, 2, 100).link_ack();
+    script.joined(ms, 11, 2);
+    forwards(script, 3000, 2, 7);
+    EXPECT_EQ(found_in(script), "") << ms;
+  }
+  Script script;
+  script.request(0, 2, 100).reply(10, 11, 2, 100, 10).ack_join(20, 11, 2, 100).link_ack();
+  forwards(script, 3000, 2, 7);
+  EXPECT_EQ(found_in(script), "F:J6-REPORT");
+}
+
+// The sink's island is `to` from now on; its frames go on being counted.
+void moves(Script& script, std::uint16_t to) {
+  script.dsn[to * 65536U + 1] = script.dsn[11 * 65536U + 1];
+}
+
+// A mote joins, the sink's island is set to 13, and another mote joins in `then`.
+Script moved(double set_ms, bool confirmed, std::uint16_t then, std::uint32_t clock_ms = 3010) {
+  Script script;
+  script.join(0, 11, 2, 100);
+  set_island(script, set_ms, 13, confirmed);
+  moves(script, 13);
+  script.request(3000, 4, 200).reply(3010, then, 4, 200, clock_ms);
+  script.ack_join(3020, then, 4, 200).link_ack().joined(3040, then, 4);
+  return script;
+}
+
+TEST(Captures, ASinkMayNotHaveHeardOfItsIsland) {
+  EXPECT_EQ(found_in(moved(1500, true, 13)), "");
+  EXPECT_EQ(found_in(moved(1500, true, 11)), "F:N9-SET");
+  EXPECT_EQ(found_in(moved(1500, false, 11)), "I:N9-SET");  // Nothing confirms it.
+}
+
+TEST(Captures, ASinkThatLostItsPowerHasItsFirstIsland) {
+  EXPECT_EQ(found_in(moved(1500, true, 11, 5)), "I:J3-DRIFT I:N9-SET");
+}
+
+TEST(Captures, WhatWasUnderWayShowsTheFormerIsland) {
+  EXPECT_EQ(found_in(moved(3005, true, 11)), "F:N9-SET");  // Its ack_join came after.
+  Script script;
+  script.join(0, 11, 2, 100).request(1000, 4, 200).reply(1010, 11, 4, 200, 1010);
+  script.ack_join(1020, 11, 4, 200).link_ack();
+  set_island(script, 1031, 13);
+  script.joined(1040, 11, 4);
+  EXPECT_EQ(found_in(script), "");
+}
+
+TEST(Captures, TheSameIslandAgainMayForgetMembers) {
+  Script script;
+  script.join(0, 11, 2, 100);
+  set_island(script, 1000, 11);
+  script.join(2000, 11, 2, 200);
+  EXPECT_EQ(found_in(script, false), "I:J5-STOP");
+  EXPECT_EQ(found_in(script), "I:J5-STOP");
+}
+
+TEST(Captures, AnIslandIsNotTheSinksBeforeItWasSet) {
+  Script script;  // The capture begins when the mote is a member.
+  forwards(script, 0, 2, 7);
+  set_island(script, 1000, 13);
+  script.join(2000, 13, 3, 200);
+  EXPECT_EQ(found_in(script, false), "");
+}
+
+TEST(Captures, AReservedIslandIsNobodys) {
+  Script script;
+  script.join(0, 11, 2, 100).request(1000, 4, 200);
+  moves(script, 65534);
+  script.reply(1010, 65534, 4, 200, 1010);
+  EXPECT_EQ(found_in(script).substr(0, 10), "F:N9-OTHER");
+}
+
+TEST(Captures, AfterAJoinRequestNothingIsAwaited) {
+  Script script;
+  script.join(0, 11, 2, 100);
+  script.net(500, 2, 1, message({11, 2}, {11, 1}, 1, 1));
+  script.join(700, 11, 2, 200);
+  script.net(900, 2, 1, message({11, 2}, {11, 1}, 1, 1));
+  EXPECT_EQ(found_in(script).find("T3-RESEND"), std::string::npos) << found_in(script);
+  Script again;
+  again.join(0, 11, 2, 100);
+  again.net(500, 2, 1, message({11, 2}, {11, 1}, 1, 1));
+  again.net(900, 2, 1, message({11, 2}, {11, 1}, 1, 1));
+  EXPECT_NE(found_in(again).find("F:T3-RESEND"), std::string::npos) << found_in(again);
+}
+
+TEST(Captures, AFrameToTheWrongAddressIsItsSendersFault) {
+  Payload request;
+  put16(request, 100);
+  put(request, kDescriptor);
+  Script script;
+  script.radio(0, 2, machine::kAmBroadcast, am::kJoin, request).reply(10, 11, 2, 100, 10);
+  script.ack_join(20, 11, 2, 100).link_ack().joined(40, 11, 2);
+  EXPECT_EQ(found_in(script), "F:J1-DEST");
+  Script reply;
+  reply.join(0, 11, 3, 50).request(500, 2, 100);
+  reply.reply(510, 11, 2, 100, 510, machine::kAmBroadcast).ack_join(520, 11, 2, 100).link_ack();
+  reply.joined(540, 11, 2);
+  EXPECT_EQ(found_in(reply), "F:J3-DEST");
+}
+
+TEST(Captures, AForwardUnderTheSinksOwnName) {
+  Script script;
+  script.join(0, 11, 2, 100).net(500, 2, 1, update(2, 7));
+  script.up(512, message({11, 1}, {11, kNullDevid}, 7).forwarded());
+  EXPECT_EQ(found_in(script), "F:N6-CONTENT");
+}
+
+TEST(Captures, AHostThatSendsUnderAnothersName) {
+  const auto from = [](machine::Address src) {
+    Script script;
+    const NetFields radio = message(src, {11, 2}, 7);
+    NetFields line = radio;
+    line.size = 114;
+    script.join(0, 11, 2, 100).down(500, line).confirm().net(510, 1, 2, radio, 11);
+    return found_in(script);
+  };
+  EXPECT_EQ(from({11, kNullDevid}), "");
+  EXPECT_EQ(from({12, 5}), "");  // Through PEIS.
+  EXPECT_EQ(from({11, 3}), "W:N1-SRC");
+}
+
+TEST(Captures, AMessageThatIsCutShort) {
+  Script script;
+  script.join(0, 11, 2, 100);
+  script.radio(500, 2, 1, am::kNet, Payload(10, 0));
+  EXPECT_EQ(found_in(script), "F:WIRE-NET-HEADER");
+}
+
+// The link repeats a frame with its DSN, so that nothing shows that the sniffer missed one copy.
+TEST(Captures, ACopyOfAFrameMayHaveEscaped) {
+  Script script;
+  script.join(0, 11, 2, 100);
+  forwards(script, 500, 2, 7);
+  script.up(524, update(2, 7).forwarded());
+  EXPECT_EQ(found_in(script, false), "I:N6-ONCE");
+  EXPECT_EQ(found_in(script), "F:N6-ONCE");
+}
+
+// Messages 1 to 3 to mote 2, all confirmed by its link; it acks those of `acked`.
+Script acks(const std::vector<std::uint16_t>& acked) {
+  Script script;
+  script.join(0, 11, 2, 100);
+  for (std::uint16_t i = 1; i <= 3; ++i) {
+    const NetFields down = message({11, 1}, {11, 2}, i, 1);
+    script.radio(1000.0 * i, 1, 2, am::kNet, down.bytes(), 11, true).link_ack();
+    for (const std::uint16_t number : acked) {
+      if (number == i)
+        script.net(1000.0 * i + 20, 2, 1, down.ack(static_cast<std::uint16_t>(50 + i)));
+    }
+  }
+  forwards(script, 4500, 2, 7);
+  return script;
+}
+
+TEST(Captures, AMoteThatAckedBeforeOwesAnAck) {
+  EXPECT_EQ(found_in(acks({1, 2, 3})), "");
+  EXPECT_EQ(found_in(acks({1, 3})), "F:T2-ACK");
+  EXPECT_EQ(found_in(acks({2, 3})), "I:T2-ACK");  // Perhaps its application came later.
+}
+
+TEST(Captures, AMoteThatAsksOnAfterAnOfferThatItHad) {
+  Script script;
+  script.join(0, 11, 3, 50).request(1000, 2, 100).reply(1010, 11, 2, 100, 1010);
+  script.run.seen.back().ack_request = true;
+  script.link_ack();
+  for (const double ms : {1490.0, 1980.0}) script.request(ms, 2, 100);
+  EXPECT_EQ(found_in(script).substr(0, 8), "F:J4-ACK");
+}
+
+// Sink and mote lose their power at 3 s, and the mote joins anew; `more` others follow.
+Script rebooted(int more) {
+  Script script;
+  script.join(0, 11, 2, 100).join(1000, 11, 3, 200);
+  script.dsn[11 * 65536U + 1] = script.dsn[2] = 90;
+  for (int i = 0; i <= more; ++i) {
+    const double ms = 5000 + 1000.0 * i;
+    const auto mote = static_cast<std::uint16_t>(i == 0 ? 2 : 10 + i);
+    const auto number = static_cast<std::uint16_t>(300 + i);
+    script.request(ms, mote, number);
+    script.reply(ms + 10, 11, mote, number, 500 + 1000 * static_cast<std::uint32_t>(i));
+    script.ack_join(ms + 20, 11, mote, number).link_ack().joined(ms + 40, 11, mote);
+  }
+  return script;
+}
+
+TEST(Captures, ARebootedSinkHeardWhatItsFirstFrameAnswers) {
+  EXPECT_EQ(found_in(rebooted(2)), "");
+  EXPECT_EQ(found_in(rebooted(0)), "S:");  // An unknown sender: too few frames to know it by.
+}
+
+TEST(Captures, AMessageForEveryIslandMayBeSentOnOnce) {
+  Script script;
+  const NetFields all = message({11, 2}, {machine::kBroadcastPid, machine::kBroadcastDevid}, 7);
+  script.join(0, 11, 2, 100).net(500, 2, 1, all).net(510, 1, machine::kAmBroadcast, all, 11);
+  EXPECT_EQ(found_in(script), "");
+  script.net(700, 1, machine::kAmBroadcast, all, 11);
+  EXPECT_EQ(found_in(script), "F:N6-ONCE");
+}
+
+TEST(Captures, AReplyInTheNameOfAnIslandThatNobodyHas) {
+  const auto offers = [](std::uint16_t island) {
+    Script script;
+    script.join(0, 11, 2, 100).request(1000, 3, 200);
+    script.dsn[island * 65536U + 1] = script.dsn[11 * 65536U + 1]++;
+    script.reply(1010, island, 3, 200, 1010);
+    script.join(3000, 11, 4, 300);
+    return found_in(script);
+  };
+  EXPECT_EQ(offers(12), "F:J3-ADDRESS");
+}
+
+TEST(Captures, AReportIsOvertakenByAnother) {
+  Script script;
+  script.request(0, 2, 100).reply(10, 11, 2, 100, 10).ack_join(20, 11, 2, 100).link_ack();
+  script.join(1000, 11, 3, 200);
+  EXPECT_EQ(found_in(script), "F:J6-REPORT");
+}
+
+TEST(Captures, AnAckOfANumberThatNoMessageHad) {
+  Script script;
+  const NetFields up = message({11, 2}, {11, 1}, 5, 1);
+  NetFields wrong = up;
+  wrong.seq_num = 0x500;
+  script.join(0, 11, 2, 100).net(500, 2, 1, up).link_ack();
+  script.net(510, 1, 2, wrong.ack(30), 11);
+  EXPECT_EQ(found_in(script), "F:T2-CONTENT");
+}
+
+// Sinks of islands 11 and 12 are in range; `then` adds what one of them does.
+template <class Then>
+std::string of_two_sinks(Then then) {
+  Script script;
+  script.dsn[12 * 65536U + 1] = 120;
+  for (const std::uint32_t tap : {1U, 2U}) {  // Their hosts' frames are in the run.
+    Payload config{kSetIsland};
+    put16(config, 10 + tap);
+    script.serial(tap, true, am::kConfig, config, tap).confirm();
+  }
+  script.join(100, 11, 2, 100).join(500, 12, 3, 200, 2);
+  then(script);
+  script.join(3000, 11, 4, 300).join(3500, 12, 5, 400, 2);
+  return found_in(script);
+}
+// The next frame in the name of island 11 is the one of island 12.
+void is_of_12(Script& script) { script.dsn[11 * 65536U + 1] = script.dsn[12 * 65536U + 1]++; }
+
+TEST(Captures, ASinkThatSpeaksInTheNameOfAnotherOne) {
+  const auto replies = [](Script& script) {
+    const std::uint8_t own = script.dsn[11 * 65536U + 1];
+    script.request(2000, 7, 5);
+    is_of_12(script);
+    script.reply(2005, 11, 7, 5, 2005);
+    script.dsn[11 * 65536U + 1] = own;
+  };
+  EXPECT_EQ(of_two_sinks(replies), "F:N9-SET");
+  const auto radiates = [](Script& script) {
+    const std::uint8_t own = script.dsn[11 * 65536U + 1];
+    is_of_12(script);
+    script.net(2000, 1, 2, message({11, 1}, {11, 2}, 9), 11);
+    script.dsn[11 * 65536U + 1] = own;
+  };
+  EXPECT_EQ(of_two_sinks(radiates), "F:N7-CONTENT");
+}
+
+TEST(Captures, AReportThatNamesAnIslandOfNobody) {
+  Script script;
+  script.request(0, 2, 100).reply(10, 267, 2, 100, 10).ack_join(20, 267, 2, 100).link_ack();
+  NetFields report = message({267, 2}, {267, kNullDevid}, 0);
+  report.app_id = 10;
+  report.body = {16};
+  put(report.body, machine::Address{11, 2});
+  put(report.body, kDescriptor);
+  script.up(40, report.forwarded()).join(1000, 267, 3, 200);
+  EXPECT_EQ(found_in(script), "F:J6-CONTENT");
+}
+
+TEST(Captures, AMessageTooShortForItsPartsIsSentOn) {
+  for (const int nbytes : {0, 1, 103}) {
+    Script script;
+    NetFields line = message({11, kNullDevid}, {11, 2}, 5);
+    line.nbytes = nbytes;
+    NetFields radio = line;
+    radio.body.resize(nbytes > 2 ? 100 : 0);
+    line.size = 114;
+    line.body = radio.body;
+    script.join(0, 11, 2, 100).down(1000, line).confirm();
+    Payload bytes = radio.bytes();
+    bytes.resize(kNetHeaderBytes + static_cast<std::size_t>(std::min(nbytes, 102)));
+    script.radio(1020, 1, 2, am::kNet, bytes, 11);
+    EXPECT_NE(found_in(script).find("F:N11-NBYTES"), std::string::npos) << nbytes;
+    EXPECT_EQ(found_in(script).find("N7-CONTENT"), std::string::npos) << nbytes;
+  }
+}
+
+TEST(Captures, ACallThatChangesItsDescriptor) {
+  const machine::Descriptor other{2, 1, 0x43};
+  Script script;
+  script.request(0, 2, 9).request(489, 2, 9, other).request(978, 2, 9, other);
+  EXPECT_NE(found_in(script).find("W:J1-SEQ"), std::string::npos) << found_in(script);
+  Script same;
+  same.request(0, 2, 9).request(489, 2, 9).request(5000, 2, 10, other);
+  EXPECT_EQ(found_in(same).find("W:J1-SEQ"), std::string::npos) << found_in(same);
+}
+
+TEST(Captures, AMemberThatLostItsPowerIsNone) {
+  Script script;
+  script.join(0, 11, 2, 100).join(500, 11, 3, 200);
+  script.dsn[2] = 200;
+  for (std::uint16_t i = 0; i < 3; ++i) forwards(script, 2000 + 500 * i, 2, i);
+  EXPECT_EQ(found_in(script), "F:J11-SEND");
+  EXPECT_EQ(found_in(script, false), "");  // Frames may have escaped, a join among them.
+}
+
+TEST(Captures, ASinkThatGetsTheIslandOfAnotherKeepsItsLine) {
+  Script script;
+  script.dsn[12 * 65536U + 1] = 120;
+  script.join(0, 11, 2, 100).join(500, 12, 3, 200, 2);
+  Payload config{kSetIsland};
+  put16(config, 11);
+  script.serial(1000, true, am::kConfig, config, 2).confirm();
+  std::swap(script.dsn[11 * 65536U + 1], script.dsn[12 * 65536U + 1]);
+  script.join(2000, 11, 6, 300, 2);
+  std::swap(script.dsn[11 * 65536U + 1], script.dsn[12 * 65536U + 1]);
+  script.join(3000, 11, 4, 400);
+  EXPECT_EQ(found_in(script), "");
+}
+
+TEST(Captures, ARebootedSinkThatBeginsInTheNameOfAnotherIsland) {
+  Script script;
+  script.join(0, 11, 2, 100).join(500, 11, 3, 200);
+  script.dsn[12 * 65536U + 1] = 200;
+  script.request(2000, 7, 5).reply(2005, 12, 7, 5, 300);
+  script.dsn[11 * 65536U + 1] = 201;
+  for (std::uint16_t i = 0; i < 3; ++i) {
+    const double ms = 3000 + 500.0 * i;
+    const auto mote = static_cast<std::uint16_t>(20 + i);
+    script.request(ms, mote, mote).reply(ms + 5, 11, mote, mote, 1300 + 500U * i);
+    script.ack_join(ms + 11, 11, mote, mote).link_ack().joined(ms + 19, 11, mote);
+  }
+  EXPECT_EQ(found_in(script), "F:J3-ADDRESS");
+}
+
+}  // namespace
+}  // namespace rubric::check::captures_test

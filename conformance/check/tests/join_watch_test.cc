@@ -1,0 +1,153 @@
+// Missing parts of joins, in logs of all that nodes were given; and the clock that a join sets.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "conformance/check/tests/testing.h"
+#include "conformance/check/tests/testing_log.h"
+
+namespace rubric::check::join_watch_test {
+namespace {
+
+constexpr const char* kBegin = R"(%rtr 1  %profile paper  %tick ms
+%node sA sink id=1 island=11
+%node m2 mote id=2
+%node m3 mote id=3
+case log
+)";
+
+std::string request(int ms, bool given, int mote = 2) {
+  const std::string id = std::to_string(mote);
+  const std::string what =
+      " am=" + id + "->1 join_request(seq_num=" + id + " mote_type=1 transducers=1 actuators=1)";
+  return at(ms, "m" + id + " > rA" + what) + (given ? at(ms + 2, "sA < rA" + what) : "");
+}
+std::string call(int mote = 2) {
+  return at(0, "m" + std::to_string(mote) + " < app join(type=1 transducers=1 actuators=1)");
+}
+std::string reply(int ms, bool given, int mote = 2) {
+  const std::string id = std::to_string(mote);
+  const std::string what = " am=1->" + id + " join_reply(island_addr=11 mote_addr=" + id +
+                           " cur_time=" + std::to_string(ms) + " seq_num=" + id + ")";
+  return at(ms, "sA > rA" + what) + (given ? at(ms + 2, "m" + id + " < rA" + what) : "");
+}
+std::string ack(int ms, int mote = 2) {
+  const std::string id = std::to_string(mote);
+  const std::string what = " am=" + id + "->1 ack_join(dest=11:1 src=11:" + id + " seq_num=" + id +
+                           " mote_type=1 transducers=1 actuators=1)";
+  return at(ms, "m" + id + " > rA" + what) +
+         at(ms, "m" + id + " > app joined(11:" + id + " success)") + at(ms + 2, "sA < rA" + what) +
+         at(ms + 2, "sA > app mote_joined(11:" + id + " type=1 transducers=1 actuators=1)");
+}
+std::string joined(int ms, int mote = 2) {
+  return request(ms, true, mote) + reply(ms + 4, true, mote) + ack(ms + 8, mote);
+}
+// Gives something to both nodes, so that the log goes on.
+std::string end(int ms) {
+  return at(ms, "m2 < rA am=9->0xffff am(9 x01)") + at(ms, "sA < rA am=9->0xffff am(9 x01)");
+}
+std::string all(const std::string& log) { return found(kBegin + log, Severity::kInconclusive); }
+std::string fails(const std::string& log) { return found(kBegin + log, Severity::kFail); }
+
+TEST(JoinWatch, AWholeJoinPasses) { EXPECT_EQ(all(call() + joined(1) + end(3000)), ""); }
+
+TEST(JoinWatch, ARequestThatCameIsAnswered) {
+  EXPECT_EQ(fails(call() + request(1, true) + end(400)), "J3-REPLY");
+  EXPECT_EQ(all(call() + request(1, true) + end(200)), "") << "There is time left.";
+  EXPECT_EQ(all(call() + request(1, false) + end(400)), "") << "It was lost.";
+  EXPECT_EQ(all(call() + request(1, true) + at(100, "sA < power reboot") + end(400)), "");
+  EXPECT_EQ(all(call() + request(1, true) + at(100, "sA < app interface(radio off)") + end(400)),
+            "");
+}
+
+TEST(JoinWatch, AListedMoteIsNot) {
+  EXPECT_EQ(all(call() + joined(1) + at(600, "m2 < power reboot") +
+                at(601, "m2 < app join(type=1 transducers=1 actuators=1)") + request(602, true) +
+                end(1000)),
+            "");
+}
+
+TEST(JoinWatch, EachOfTwoIsAnswered) {
+  EXPECT_EQ(fails(call() + call(3) + request(1, true) + request(5, true, 3) + reply(8, true, 3) +
+                  ack(12, 3) + end(400)),
+            "J9-INTERLEAVE");
+}
+
+TEST(JoinWatch, AReplyThatCameIsAcked) {
+  const std::string log = call() + request(1, true);
+  EXPECT_EQ(fails(log + reply(5, true) + end(400)), "J4-ACK");
+  EXPECT_EQ(all(log + reply(5, false) + end(400)), "") << "It was lost.";
+  EXPECT_EQ(all(log + reply(5, true) + at(100, "m2 < power off") + end(400)), "");
+}
+
+TEST(JoinWatch, ARequestIsRepeated) {
+  const std::string log = call() + request(1, false);
+  EXPECT_EQ(fails(log + end(900)), "J8-RETRY");
+  EXPECT_EQ(all(log + end(700)), "");
+  EXPECT_EQ(all(log + request(495, false) + end(1200)), "");
+  EXPECT_EQ(all(log + at(300, "m2 < power off") + end(900)), "");
+  EXPECT_EQ(fails(log + request(495, false) + end(1500)), "J8-RETRY");
+  const std::string four = log + request(495, false) + request(990, false) + request(1480, false);
+  EXPECT_EQ(all(four + at(1980, "m2 > app joined(0:0 fail)") + end(5000)), "");
+}
+
+TEST(JoinWatch, TheClockIsSet) {
+  const std::string log = call() + joined(1) + at(2000, "m2 < app get_clock()");
+  EXPECT_EQ(all(log + at(2000, "m2 > app clock(ms=2001)")), "");
+  EXPECT_EQ(all(log + at(2000, "m2 > app clock(ms=2900)")), "");
+  EXPECT_EQ(fails(log + at(2000, "m2 > app clock(ms=9000)")), "J4-CLOCK");
+  EXPECT_EQ(fails(log + at(2000, "m2 > app clock(ms=0)")), "J4-CLOCK");
+  EXPECT_EQ(all(at(0, "m2 < app get_clock()") + at(0, "m2 > app clock(ms=77)")), "");
+}
+
+// Captures, in which the link's acknowledgement is the proof.
+std::string seen(const Script& script, bool complete) {
+  Options options;
+  options.start_cold = true;
+  options.sniffer_complete = complete;
+  std::string out;
+  for (const Finding& finding : judge(script.run, options).findings) {
+    const char* const id = reflect::requirement(finding.requirement).id;
+    if (finding.severity == Severity::kFail) out += std::string(id) + " ";
+    if (finding.severity == Severity::kInconclusive) out += std::string("(") + id + ") ";
+  }
+  return out;
+}
+Script asks(bool link_ack) {
+  Script script;
+  script.join(0, 11, 3, 200);
+  Payload request;
+  put16(request, 100);
+  put(request, kDescriptor);
+  script.radio(100, 2, 1, am::kJoin, request, 0, true);
+  if (link_ack) script.link_ack();
+  return script;
+}
+
+TEST(JoinWatch, AMoteThatHasNotJoinedOwesNoAck) {
+  const auto message = [](int ms) {
+    const std::string what =
+        " am=1->2 net_msg(dest=11:2 src=11:1 reliable=1 seq_num=5 nbytes=3 "
+        "payload.trans_id=connless payload.app_id=control_layer payload.payload=x01)";
+    return at(ms, "sA > rA" + what) + at(ms + 2, "m2 < rA" + what);
+  };
+  const std::string life =
+      at(2000,
+         "m2 > rA am=2->1 net_msg(dest=11:1 src=11:2 reliable=0 seq_num=9 nbytes=3 "
+         "payload.trans_id=connless payload.app_id=control_layer payload.payload=x01)");
+  EXPECT_EQ(fails(call() + request(1, true) + message(4) + reply(8, true) + ack(12) + life), "");
+  EXPECT_EQ(fails(call() + joined(1) + message(30) + life), "N5-DELIVER");
+}
+
+TEST(JoinWatch, InACaptureALinkAckProvesReception) {
+  const auto life = [](Script script) {
+    return script.request(700, 4, 300).reply(710, 11, 4, 300, 710);
+  };
+  EXPECT_EQ(seen(life(asks(true)), true), "J3-REPLY ");
+  EXPECT_EQ(seen(life(asks(true)), false), "J3-REPLY ") << "Its DSNs follow each other.";
+  EXPECT_EQ(seen(life(asks(false)), true), "(J9-INTERLEAVE) ");
+  EXPECT_EQ(seen(asks(true), true), "(J3-REPLY) ") << "Nothing shows that it lives.";
+}
+
+}  // namespace
+}  // namespace rubric::check::join_watch_test

@@ -1,0 +1,230 @@
+// Captures alone, without a log: a node that breaks a rule is found, and nodes that are prompt,
+// slow, late or unlucky but keep it are not blamed.
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "codec/reflect/requirements.h"
+#include "conformance/check/judge/judge.h"
+#include "conformance/check/tests/testing.h"
+
+namespace rubric::check::passive_test {
+namespace {
+
+using machine::kNullDevid;
+
+std::vector<Finding> findings_of(const Script& script, Severity severity,
+                                 const Options& options = {}) {
+  std::vector<Finding> out;
+  for (const Finding& finding : judge(script.run, options).findings) {
+    if (finding.severity == severity) out.push_back(finding);
+  }
+  return out;
+}
+
+std::string rules_of(const std::vector<Finding>& findings) {
+  std::string out;
+  for (const Finding& finding : findings) {
+    out += std::string(out.empty() ? "" : " ") + reflect::requirement(finding.requirement).id;
+  }
+  return out;
+}
+
+std::string failures_of(const Script& script, const Options& options = {}) {
+  return rules_of(findings_of(script, Severity::kFail, options));
+}
+
+NetFields message(machine::Address src, machine::Address dest, std::uint16_t seq_num) {
+  NetFields net;
+  net.src = src;
+  net.dest = dest;
+  net.seq_num = seq_num;
+  return net;
+}
+NetFields to_mote(std::uint16_t seq_num) { return message({11, kNullDevid}, {11, 2}, seq_num); }
+NetFields update(std::uint16_t mote, std::uint16_t seq_num) {
+  return message({11, mote}, {11, kNullDevid}, seq_num);
+}
+
+// J6-REPORT: mote 2 is confirmed at 20 ms; mote 3 joins at 1000 ms and is reported.
+Script two_joins(const std::function<void(Script&)>& report_of_2, bool confirmed = true) {
+  Script script;
+  script.request(0, 2, 100).reply(10, 11, 2, 100, 10).ack_join(20, 11, 2, 100);
+  if (confirmed) script.link_ack();
+  report_of_2(script);
+  script.join(1000, 11, 3, 200);
+  script.net(1500, 3, 1, update(3, 1)).up(1515, update(3, 1).forwarded());
+  return script;
+}
+
+TEST(Passive, AMemberThatIsNeverReportedWhileALaterOneIs) {
+  const auto never = [](Script&) {};
+  EXPECT_EQ(failures_of(two_joins(never)), "J6-REPORT");
+  for (const double ms : {21.0, 40.0, 310.0}) {  // Prompt, usual, late.
+    EXPECT_EQ(failures_of(two_joins([&](Script& s) { s.joined(ms, 11, 2); })), "");
+  }
+  EXPECT_EQ(failures_of(two_joins(never, false)), "");  // It may not have arrived.
+  // Its repetition is reported.
+  EXPECT_EQ(failures_of(two_joins(
+                [](Script& s) { s.ack_join(280, 11, 2, 100).link_ack().joined(500, 11, 2); })),
+            "");
+}
+
+TEST(Passive, OneThatIsReportedAfterALaterOneIsNotMissing) {
+  Script script;
+  script.request(0, 2, 100).reply(10, 11, 2, 100, 10).ack_join(20, 11, 2, 100).link_ack();
+  script.request(50, 3, 200).reply(60, 11, 3, 200, 60).ack_join(70, 11, 3, 200).link_ack();
+  script.joined(90, 11, 3).joined(250, 11, 2);
+  script.net(1500, 3, 1, update(3, 1)).up(1515, update(3, 1).forwarded());
+  EXPECT_EQ(failures_of(script), "");
+}
+
+TEST(Passive, WithoutALaterOneItsListMayBeFull) {
+  Script script;
+  script.request(0, 2, 100).reply(10, 11, 2, 100, 10).ack_join(20, 11, 2, 100).link_ack();
+  script.net(1500, 2, 1, update(2, 1)).up(1515, update(2, 1).forwarded());
+  EXPECT_EQ(failures_of(script), "");
+  EXPECT_EQ(rules_of(findings_of(script, Severity::kInconclusive)), "J6-REPORT");
+}
+
+// J3-TIME and J3-DRIFT: replies with these values of cur_time, 600 ms apart, or so many.
+std::string replies(const std::vector<std::uint32_t>& clock, double apart_ms = 600) {
+  Script script;
+  for (std::size_t i = 0; i < clock.size(); ++i) {
+    const auto mote = static_cast<std::uint16_t>(2 + i);
+    const double ms = apart_ms * static_cast<double>(i);
+    script.request(ms, mote, 100).reply(ms + 10, 11, mote, 100, clock[i]);
+  }
+  const std::string weak = rules_of(findings_of(script, Severity::kWeak));
+  return failures_of(script) + (weak.empty() ? "" : " " + weak);
+}
+
+TEST(Passive, AClockThatStandsStillFromOneReplyToTheNext) {
+  EXPECT_EQ(replies({10, 10, 10}), "J3-TIME");
+  EXPECT_EQ(replies({10, 610, 610, 610}), "J3-TIME");
+  EXPECT_EQ(replies({10, 610, 1210, 1810}), "");
+  EXPECT_EQ(replies({1000, 1000, 2000, 2000, 3000}), "");        // It counts seconds.
+  EXPECT_EQ(replies({10, 624, 1239, 1853}), "");                 // Binary ms.
+  EXPECT_EQ(replies({0xFFFFFF00, 0xFFFFFF00, 0x00000200}), "");  // It wraps.
+}
+
+TEST(Passive, AClockThatWrapsWhileNothingIsSeen) {
+  constexpr double kDayMs = 86'400'000;
+  const auto all = [](const std::vector<std::uint32_t>& clock, double days) {
+    return replies(clock, days * kDayMs);
+  };
+  EXPECT_EQ(all({10, 2'592'000'010}, 30), "");
+  EXPECT_EQ(all({10, 889'032'714}, 60), "");  // 2^32 ms are 49.7 days.
+  EXPECT_EQ(all({10, 889'052'714}, 60), "");
+  EXPECT_EQ(all({10, 10}, 30), "J3-TIME");
+  EXPECT_EQ(all({10, 10}, 60), "J3-TIME");
+  EXPECT_EQ(all({10, 700'000'000}, 60), " J3-DRIFT");
+}
+
+// N7-RADIO: a message comes down the line at 500 ms; `after` is what the sink does then.
+Script down_one(const std::function<void(Script&)>& after, bool confirmed = true) {
+  Script script;
+  script.join(0, 11, 2, 100).down(500, to_mote(7));
+  if (confirmed) script.confirm();
+  after(script);
+  return script;
+}
+void radiates(Script& script, double ms) { script.net(ms, 1, 2, to_mote(7), 11); }
+void answers(Script& script, double ms) {
+  script.request(ms - 10, 3, 200).reply(ms, 11, 3, 200, static_cast<std::uint32_t>(ms));
+}
+
+TEST(Passive, WhatCameDownALineLeavesByRadio) {
+  EXPECT_EQ(failures_of(down_one([](Script& s) { answers(s, 900); })), "N7-RADIO");
+  EXPECT_EQ(failures_of(down_one([](Script& s) {
+              answers(s, 600);
+              s.net(900, 1, 2, message({11, 1}, {11, 2}, 50), 11);
+            })),
+            "N7-RADIO");
+  for (const double ms : {505.0, 600.0, 790.0}) {  // Prompt, usual, backing off.
+    EXPECT_EQ(failures_of(down_one([&](Script& s) {
+                radiates(s, ms);
+                answers(s, 900);
+              })),
+              "");
+  }
+  EXPECT_EQ(failures_of(down_one([](Script& s) {  // Behind another frame.
+              answers(s, 700);
+              radiates(s, 780);
+            })),
+            "");
+  EXPECT_EQ(failures_of(down_one([](Script&) {})), "");                      // The end.
+  EXPECT_EQ(failures_of(down_one([](Script& s) { answers(s, 700); })), "");  // Too soon to say.
+}
+
+TEST(Passive, WhatNobodyConfirmedMayNotHaveArrived) {
+  const Script script = down_one([](Script& s) { answers(s, 900); }, false);
+  EXPECT_EQ(failures_of(script), "");
+  EXPECT_EQ(rules_of(findings_of(script, Severity::kInconclusive)), "N7-RADIO");
+}
+
+// The sink radiates a message of its own to its base station, which that one may have handed down.
+Script own_by_radio(const std::function<void(Script&)>& line) {
+  Script script;
+  script.join(0, 11, 2, 100);
+  line(script);
+  script.net(600, 1, 2, message({11, 1}, {12, 2}, 50), 11);
+  return script;
+}
+
+TEST(Passive, ALineOfWhichFramesAreMissingProvesNoAbsence) {
+  const auto whole = [](Script& s) {
+    s.down(400, to_mote(7)).confirm().net(405, 1, 2, to_mote(7), 11);
+  };
+  EXPECT_EQ(failures_of(own_by_radio(whole)), "N6-OWN");
+  const auto number_missing = [&](Script& s) {
+    s.down(300, to_mote(6)).confirm().net(305, 1, 2, to_mote(6), 11);
+    ++s.serial_number;
+    whole(s);
+  };
+  EXPECT_EQ(failures_of(own_by_radio(number_missing)), "");
+  const auto confirmation_missing = [&](Script& s) {
+    s.down(300, to_mote(6)).confirm(false).net(305, 1, 2, to_mote(6), 11);
+    whole(s);
+  };
+  EXPECT_EQ(failures_of(own_by_radio(confirmation_missing)), "");
+}
+
+// Only what the sink sends up its line is captured: its host's messages are not.
+TEST(Passive, ALineOfAForwarderLacksItsOtherClientsAndThatIsSaidOnce) {
+  Script script;
+  script.join(0, 11, 2, 100);
+  for (std::uint16_t i = 0; i < 20; ++i) {
+    NetFields up = update(2, i);
+    up.reliable = 1;
+    const double ms = 500 + 700.0 * i;
+    script.net(ms, 2, 1, up).up(ms + 15, up.forwarded());
+    script.up(ms + 300,
+              message({11, kNullDevid}, {11, 1}, i).ack(static_cast<std::uint16_t>(100 + i)));
+  }
+  const std::vector<Finding> open = findings_of(script, Severity::kInconclusive);
+  ASSERT_EQ(open.size(), 1U);
+  EXPECT_EQ(open[0].requirement, ReqId::kNone);
+  EXPECT_NE(open[0].text.find("40 things"), std::string::npos) << open[0].text;
+  EXPECT_EQ(failures_of(script), "");
+}
+
+TEST(Passive, AReceiverThatDiedIsOneFinding) {
+  Script script;
+  script.join(0, 11, 2, 100).join(100, 11, 3, 200);
+  for (std::uint16_t i = 0; i < 12; ++i) {
+    NetFields down = message({11, 1}, {11, 3}, i);
+    down.reliable = 1;
+    script.net(500 + 1200.0 * i, 1, 3, down, 11);
+  }
+  const std::vector<Finding> open = findings_of(script, Severity::kInconclusive);
+  ASSERT_EQ(open.size(), 1U);
+  EXPECT_EQ(rules_of(open), "T2-ACK");
+  EXPECT_NE(open[0].text.find("Nothing of mote 3 is seen"), std::string::npos) << open[0].text;
+  EXPECT_NE(open[0].text.find("12 things"), std::string::npos) << open[0].text;
+}
+
+}  // namespace
+}  // namespace rubric::check::passive_test

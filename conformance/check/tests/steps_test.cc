@@ -1,0 +1,205 @@
+// Clocks that step, and stamps that are wrong: found and said, and what does not span them is
+// judged as ever.
+#include "conformance/check/align/steps.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+
+#include "conformance/check/input/read.h"
+#include "conformance/check/judge/judge.h"
+#include "conformance/check/tests/failures.h"
+#include "conformance/check/tests/testing.h"
+#include "conformance/selftest/lawful_traffic/generate.h"
+
+namespace rubric::check {
+namespace {
+
+using ::testing::HasSubstr;
+
+Options strict() {
+  Options options;
+  options.sniffer_complete = options.start_cold = true;
+  return options;
+}
+
+// Moves the stamps from `ms` on, as a recorder would; frames keep their order.
+check::Run stepped_at(Script script, double ms, double by_ms, std::size_t count = SIZE_MAX) {
+  for (Observation& seen : script.run.seen) {
+    if (seen.place.time_us < static_cast<std::int64_t>(ms * 1000) || count == 0) continue;
+    seen.place.time_us += static_cast<std::int64_t>(by_ms * 1000);
+    --count;
+  }
+  mend_steps(script.run);
+  place_steps(script.run);
+  merge(script.run);
+  return script.run;
+}
+
+// Mote 2 sends a message each 400 ms, with the numbers `first` to `last`.
+void send(Script& script, int first, int last) {
+  for (int i = first; i <= last; ++i) {
+    NetFields up;
+    up.dest = {11, machine::kNullDevid};
+    up.src = {11, 2};
+    up.seq_num = static_cast<std::uint16_t>(i);
+    script.net(400 * i, 2, 1, up).up(400 * i + 15, up.forwarded());
+  }
+}
+
+// Two motes join, at 0 and 1000 ms; the first one sends messages.
+Script busy() {
+  Script script;
+  script.join(0, 11, 2, 100);
+  send(script, 1, 2);
+  script.join(1000, 11, 3, 200);
+  send(script, 3, 19);
+  return script;
+}
+
+TEST(Steps, AreFoundAndSaid) {
+  check::Run run = stepped_at(busy(), 3000, -100'000);
+  ASSERT_EQ(run.steps.size(), 1U);
+  EXPECT_FALSE(run.steps[0].alone());
+  ASSERT_EQ(run.facts.size(), 1U);
+  EXPECT_THAT(run.facts[0], HasSubstr("the clock of script steps back by 99.615 s at frame"));
+  EXPECT_TRUE(failures_of(judge(run, strict())).empty());
+  EXPECT_TRUE(
+      stepped_at(busy(), 3000, -5).steps.empty());  // Less than the time to the frame before.
+}
+
+TEST(Steps, OneWrongStampIsNoStep) {
+  for (const double by_ms : {-100'000.0, 100'000.0}) {
+    check::Run run = stepped_at(busy(), 3200, by_ms, 1);
+    ASSERT_EQ(run.steps.size(), 1U) << by_ms;
+    EXPECT_TRUE(run.steps[0].alone());
+    ASSERT_EQ(run.facts.size(), 1U);
+    EXPECT_THAT(run.facts[0], HasSubstr("is wrong by about"));
+    EXPECT_TRUE(failures_of(judge(run, strict())).empty());
+    const std::int64_t at_us = run.steps[0].time_us;
+    EXPECT_GE(at_us, 2'800'000);
+    EXPECT_LE(at_us, 3'600'000);
+  }
+}
+
+TEST(Steps, TurnedFramesOfOneTapKeepTheOrderOfTheFile) {
+  Script script = busy();
+  NetFields more;
+  more.dest = {11, machine::kNullDevid};
+  more.src = {11, 1};
+  script.up(7620, more);
+  script.run.seen.back().place.time_us -= 8'000;  // Before the one before it.
+  const std::uint64_t last = script.run.seen.back().place.frame;
+  check::Run run = stepped_at(script, 0, 0);
+  EXPECT_TRUE(run.steps.empty());
+  std::uint64_t frame = 0;
+  for (const Observation& seen : run.seen) {
+    if (seen.tap != 1) continue;
+    EXPECT_GT(seen.place.frame, frame);
+    frame = seen.place.frame;
+  }
+  EXPECT_EQ(frame, last);
+}
+
+TEST(Steps, ALinkAckThatComesMuchLaterShowsOneForth) {
+  Script script = busy();
+  Script later = script;
+  for (std::size_t i = 0; i < later.run.seen.size(); ++i) {
+    if (later.run.seen[i].kind != Observation::Kind::kLinkAck) continue;
+    const double ms = static_cast<double>(later.run.seen[i].place.time_us) / 1000;
+    const check::Run run = stepped_at(later, ms, 400);
+    ASSERT_EQ(run.steps.size(), 1U);
+    EXPECT_THAT(run.facts[0], HasSubstr("forth"));
+    EXPECT_TRUE(failures_of(judge(run, strict())).empty());
+  }
+}
+
+// A lawful mote repeats its ack_join for less than a second, and need not repeat it at all.
+TEST(Steps, ALateAckJoinBetweenOrdinarySilencesShowsNone) {
+  Script script;
+  script.join(0, 11, 2, 100).join(100, 11, 3, 200);
+  send(script, 1, 3);
+  script.ack_join(1590, 11, 3, 200);
+  send(script, 4, 19);
+  const check::Run run = stepped_at(script, 0, 0);
+  EXPECT_TRUE(run.steps.empty());
+  ASSERT_EQ(failures_of(judge(run, strict())).size(), 1U);
+}
+
+// A request that comes too early: blamed before the step and after it, but not across it.
+TEST(Steps, OnlyWhatSpansThemIsInconclusive) {
+  for (const double at_ms : {2000.0, 5000.0}) {
+    Script script = busy();
+    script.request(at_ms, 4, 300).request(at_ms + 100, 4, 300);
+    std::sort(script.run.seen.begin(), script.run.seen.end(),
+              [](const Observation& a, const Observation& b) {
+                return a.place.time_us < b.place.time_us;
+              });
+    const std::multiset<std::string> whole = failures_of(judge(stepped_at(script, 0, 0), strict()));
+    ASSERT_EQ(whole.size(), 1U);
+    for (const double by_ms : {-100'000.0, -700.0}) {
+      EXPECT_EQ(failures_of(judge(stepped_at(script, 3000, by_ms), strict())), whole) << by_ms;
+      const check::Run across = stepped_at(script, at_ms + 50, by_ms);
+      ASSERT_FALSE(across.steps.empty());
+      EXPECT_TRUE(failures_of(judge(across, strict())).empty());
+      const Report report = judge(across, strict());
+      EXPECT_EQ(report.verdict, Verdict::kInconclusive);
+    }
+  }
+}
+
+TEST(Steps, TapsOneAfterTheOtherInOneFileDoNotStep) {
+  Script script = busy();
+  std::stable_sort(script.run.seen.begin(), script.run.seen.end(),
+                   [](const Observation& a, const Observation& b) { return a.tap < b.tap; });
+  const check::Run run = stepped_at(script, 0, 0);
+  EXPECT_TRUE(run.steps.empty());
+  EXPECT_TRUE(run.facts.empty());
+}
+
+// A sink of legal traffic forwards one message twice; far from it the clock steps.
+TEST(Steps, ARealFaultInAStretchWithoutOneIsFound) {
+  std::size_t planted = 0;
+  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+    lawful::Traffic traffic = lawful::generate("usual", seed);
+    const auto run_of = [&] {
+      RunReader reader;
+      std::string error;
+      reader.add_bytes("usual", lawful::to_pcapng(traffic), error);
+      return reader.finish();
+    };
+    constexpr std::int64_t kBaseUs = 10'000'000'000;
+    for (lawful::LegalPacket& packet : traffic.packets) packet.time_us += kBaseUs;
+    // The sink forwards one message twice, in the first half or in the second one.
+    const bool early = seed % 2 == 0;
+    const std::size_t middle = traffic.packets.size() / 2;
+    std::size_t victim = early ? middle / 2 : middle + middle / 2;
+    const auto up = [&](const lawful::LegalPacket& packet) {
+      return packet.interface != "radio" && packet.direction == Direction::kOutbound &&
+             packet.record.size() > 30;
+    };
+    while (victim + 1 < traffic.packets.size() && !up(traffic.packets[victim])) ++victim;
+    const auto place = traffic.packets.begin() + static_cast<std::ptrdiff_t>(victim);
+    traffic.packets.insert(place, lawful::LegalPacket(*place));
+    const std::multiset<std::string> found = failures_of(judge(run_of(), strict()));
+    if (found.empty()) continue;
+    ++planted;
+    const std::size_t step = early ? middle + middle / 2 : middle / 2;
+    for (const std::int64_t by_us : {-600'000'000LL, -1'500'000LL, 900'000'000LL}) {
+      lawful::Traffic whole = traffic;
+      for (std::size_t i = step; i < traffic.packets.size(); ++i) {
+        traffic.packets[i].time_us += by_us;
+      }
+      const check::Run run = run_of();
+      EXPECT_FALSE(run.steps.empty()) << seed << " " << by_us;
+      EXPECT_EQ(failures_of(judge(run, strict())), found) << seed << " " << by_us;
+      traffic = std::move(whole);
+    }
+  }
+  EXPECT_GE(planted, 15U);
+}
+
+}  // namespace
+}  // namespace rubric::check

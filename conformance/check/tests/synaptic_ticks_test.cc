@@ -1,0 +1,133 @@
+// Duties of the ticks of a synaptic clock, in logs that have the calls and what was given.
+#include <gtest/gtest.h>
+
+#include <map>
+#include <sstream>
+#include <string>
+
+#include "conformance/check/tests/testing_log.h"
+
+namespace rubric::check::synaptic_ticks_test {
+namespace {
+
+std::string sink(int ms, const std::string& rest) { return at(ms, "sA " + rest); }
+std::string digit(int n) { return std::to_string(n); }
+// Returns data of m2 to the sink, or to mote 3.
+std::string data(int ms, int seq) {
+  return m2(ms, "> rA am=2->1 am(28 x000b0001000b000200000" + digit(seq) + "06010b0000803f)");
+}
+std::string data_to_3(int ms, int seq) {
+  return m2(ms, "> rA am=2->3 am(28 x000b0003000b000200000" + digit(seq) + "06010b0000803f)");
+}
+std::string to_sink(int ms, int seq) {
+  return data(ms, seq) +
+         sink(ms + 3, "< rA am=2->1 am(28 x000b0001000b000200000" + digit(seq) + "06010b0000803f)");
+}
+std::string out(const std::string& mode) {
+  return m2(100, "< app create_out(dest=11:1 size=1 mode=" + mode + ")") +
+         m2(110, "< app start(channel=2->1)");
+}
+std::string end(int ms) { return m2(ms, "< rA am=9->0xffff am(9 x01)"); }
+
+// Lines in any order.
+std::string all(const std::string& log) {
+  std::multimap<int, std::string> lines;
+  std::istringstream in(log);
+  for (std::string line; std::getline(in, line);) {
+    lines.emplace(std::stoi(line.substr(line.find('@') + 1)), line + "\n");
+  }
+  std::string sorted;
+  for (const auto& [ms, line] : lines) sorted += line;
+  return found(kJoined + sorted, Severity::kWeak);
+}
+
+TEST(SynapticTicks, EachTickSends) {
+  const std::string three = out("reliable") + data(640, 1) + data(1130, 2) + data(1620, 3);
+  EXPECT_EQ(all(three + end(2000)), "");
+  EXPECT_EQ(all(three + end(2700)), "S2-SEND");
+  EXPECT_EQ(all(out("reliable") + end(1500)), "S2-SEND");
+  EXPECT_EQ(all(out("reliable") + data(640, 1) + data(1620, 2) + end(1700)), "S2-SEND");
+}
+
+TEST(SynapticTicks, DataAreWhatWasWritten) {
+  const auto wrote = [](const std::string& pos) {
+    return m2(120, "< app write_output(channel=2->1 pos=" + pos + " value=1)");
+  };
+  EXPECT_EQ(all(out("reliable") + wrote("0") + data(640, 1)), "");
+  const std::string two = "> rA am=2->1 am(28 x000b0001000b00020000010a010b";
+  const std::string both = m2(100, "< app create_out(dest=11:1 size=2 mode=reliable)") +
+                           m2(110, "< app start(channel=2->1)");
+  EXPECT_EQ(all(both + wrote("1") + m2(640, two + "000080400000803f)")), "")
+      << "The other is free.";
+  EXPECT_EQ(all(both + wrote("1") + m2(640, two + "0000803f00000000)")), "S2-CONTENT");
+  EXPECT_EQ(all(both + wrote("1") + m2(130, two + "0000803f00000000)")), "") << "Before its tick.";
+}
+
+TEST(SynapticTicks, WhatCannotSendDoesNot) {
+  const std::string three = out("reliable") + data(640, 1) + data(1130, 2);
+  EXPECT_EQ(all(three + m2(1200, "< app stop(channel=2->1)") + end(2700)), "");
+  EXPECT_EQ(all(three + m2(1200, "< app interface(radio off)") + end(2700)), "");
+  EXPECT_EQ(all(three + m2(1200, "< power off") + end(2700)), "");
+  EXPECT_EQ(all(three + m2(1200, "< app set_time_step(clock=3000)") + end(2700)), "");
+}
+
+TEST(SynapticTicks, AChangeIsSent) {
+  const std::string first = out("power_save") + data(640, 1);
+  EXPECT_EQ(all(first + end(4000)), "");
+  const std::string written = first + m2(2000, "< app write_output(channel=2->1 pos=0 value=2)");
+  EXPECT_EQ(all(written + end(4000)), "S3-CHANGED");
+  const std::string two = "> rA am=2->1 am(28 x000b0001000b00020000020601";
+  EXPECT_EQ(all(written + m2(2100, two + "0b00000040)") + end(4000)), "");
+  EXPECT_EQ(all(written + data(2100, 2) + end(4000)), "S3-CHANGED") << "The old value.";
+  EXPECT_EQ(all(out("power_save") + end(1500)), "S3-FIRST");
+  EXPECT_EQ(all(out("power_save") + m2(200, "< app write_output(channel=2->1 pos=0 value=2)") +
+                end(1500)),
+            "S3-CHANGED");
+}
+
+std::string in(const std::string& rest) {
+  return sink(110, "< app create_in(src=11:2 size=1 mode=reliable)") +
+         sink(110, "< app start(channel=2->1)") + rest;
+}
+std::string told(int ms, const std::string& status) {
+  return sink(ms, "> app syn_data(channel=2->1 status=" + status + ")");
+}
+
+TEST(SynapticTicks, EachTickSignals) {
+  EXPECT_EQ(all(in(told(600, "old") + told(1090, "old") + end(1500))), "");
+  EXPECT_EQ(all(in(told(600, "old") + told(1090, "old") + end(2500))), "S2-SIGNAL");
+  EXPECT_EQ(all(in(end(1500))), "S2-SIGNAL");
+  EXPECT_EQ(all(in(sink(300, "< app stop(channel=2->1)") + end(1500))), "");
+  EXPECT_EQ(all(in(sink(300, "< app stop(channel=2->1)") + told(600, "old"))), "S6-STOPPED");
+}
+
+TEST(SynapticTicks, TheStatusSaysWhetherDataCame) {
+  const std::string sends = out("reliable");
+  EXPECT_EQ(all(sends + in(to_sink(640, 1) + told(700, "new") + told(1190, "old"))), "");
+  EXPECT_EQ(all(sends + in(told(600, "old") + told(1090, "new") + end(1100))), "S2-SEND S3-OLD");
+  EXPECT_EQ(all(sends + in(told(600, "old") + to_sink(700, 1) + told(1090, "old") + end(1100))),
+            "S2-SIGNAL");
+  // Close to a tick either may be signalled.
+  EXPECT_EQ(all(sends + in(told(460, "old") + to_sink(940, 1) + told(950, "old") +
+                           told(1440, "new") + end(1450))),
+            "");
+}
+
+// Mote 2 sends to the sink; a second channel is started later.
+TEST(SynapticTicks, AStartShiftsNoOtherChannel) {
+  const std::string first = out("reliable") + data(640, 1) + data(1128, 2);
+  const std::string second = m2(1300, "< app create_out(dest=11:3 size=1 mode=reliable)") +
+                             m2(1310, "< app start(channel=2->3)");
+  const auto later = [](int ms) {
+    std::string lines;
+    for (int tick = 0; tick < 3; ++tick) {
+      lines += data(ms + 488 * tick, 3 + 2 * tick) + data_to_3(ms + 2 + 488 * tick, 4 + 2 * tick);
+    }
+    return lines;
+  };
+  EXPECT_EQ(all(first + second + later(1616)), "");
+  EXPECT_EQ(all(first + second + later(1798)), "S6-CLOCK");
+}
+
+}  // namespace
+}  // namespace rubric::check::synaptic_ticks_test

@@ -1,6 +1,0 @@
-# expect: 6:7: import 'nowhere' not found; 'spec/compiler/test/bad/nowhere.ksy' was expected
-meta:
-  id: bad
-  endian: be
-  imports:
-    - nowhere
