@@ -39,7 +39,7 @@ std::string_view nearest(std::string_view word, const std::vector<std::string>& 
       best_distance = distance;
     }
   }
-  const int tolerated = std::max<int>(1, static_cast<int>(word.size()) / 3 + 1);
+  const int tolerated = std::max<int>(1, static_cast<int>(word.size()) / 3);
   return best_distance <= tolerated ? best : std::string_view{};
 }
 

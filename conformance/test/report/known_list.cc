@@ -14,6 +14,7 @@
 #include "codec/reflect/requirements.h"
 #include "codec/text/text.h"
 #include "conformance/test/report/log_lines.h"
+#include "conformance/test/report/words.h"
 #include "conformance/test/suite/expected.h"
 #include "conformance/trace/schema.h"
 
@@ -55,19 +56,6 @@ std::string message_of(const runner::Failure& failure) {
   const std::string node = asked->node + ' ' + std::string(trace::op_text(asked->op));
   if (asked->am) return asked->message.name;
   return fmt::format("{} {} {}", node, asked->link, asked->message.name);
-}
-
-// Returns why a case is not decided, without times and arguments: "call join: no such call" for
-// "`call 0 join(type=1)`: no such call".
-std::string what_was_missing(const std::string& reason) {
-  const std::size_t end = reason.find("`: ");
-  if (!reason.starts_with('`') || end == std::string::npos) return reason;
-  const std::string_view command = std::string_view(reason).substr(1, end - 1);
-  const std::size_t verb = command.find(' ');
-  const std::size_t name = command.find_first_not_of("0123456789 ", verb);
-  if (verb == command.npos || name == command.npos) return reason;
-  const std::string_view what = command.substr(name, command.find_first_of("( ", name) - name);
-  return fmt::format("{} {}{}", command.substr(0, verb), what, reason.substr(end + 1));
 }
 
 struct KnownEntry {

@@ -160,4 +160,15 @@ std::string replay_command(const SuiteRun& run, const ImplementationRun& impleme
   return out;
 }
 
+std::string what_was_missing(const std::string& reason) {
+  const std::size_t end = reason.find("`: ");
+  if (!reason.starts_with('`') || end == std::string::npos) return reason;
+  const std::string_view command = std::string_view(reason).substr(1, end - 1);
+  const std::size_t verb = command.find(' ');
+  const std::size_t name = command.find_first_not_of("0123456789 ", verb);
+  if (verb == command.npos || name == command.npos) return reason;
+  const std::string_view what = command.substr(name, command.find_first_of("( ", name) - name);
+  return fmt::format("{} {}{}", command.substr(0, verb), what, reason.substr(end + 1));
+}
+
 }  // namespace rubric::suite

@@ -41,4 +41,8 @@ std::string outside_headline(const ImplementationRun& implementation);
 std::string replay_command(const SuiteRun& run, const ImplementationRun& implementation,
                            const CaseRun& one);
 
+/// Returns why a case is not decided, without times and arguments: "call join: no such call" for
+/// "`call 0 join(type=1)`: no such call".
+std::string what_was_missing(const std::string& reason);
+
 }  // namespace rubric::suite

@@ -306,7 +306,9 @@ class Story {
     for (const CaseRun& one : implementation_.cases) {
       if (one.result.verdict != verdict) continue;
       const std::string listed = one.expected_reason.empty() ? "" : ", as listed: ";
-      reasons[one.result.reason + listed + one.expected_reason].push_back(case_name(one));
+      const std::string reason =
+          options_.verbose ? one.result.reason : what_was_missing(one.result.reason);
+      reasons[reason + listed + one.expected_reason].push_back(case_name(one));
     }
     if (!reasons.empty()) out_ += '\n';
     for (const auto& [reason, cases] : reasons) {
