@@ -13,7 +13,8 @@ import sys
 
 EMITTERS = "cpp,tables,requirements,protocols,dictionary,messages,profiles,cases,java,lua"
 # Sources with the tables of all protocols, the routes to their messages, and all rule texts.
-HOLDERS = ("codec/reflect/registry.cc", "codec/frame_generator/routes.cc", "codec/reflect/requirements.cc")
+HOLDERS = ("codec/reflect/registry.cc", "codec/frame_generator/routes.cc",
+           "codec/reflect/requirements.cc")
 
 
 def run(words, folder):

@@ -276,7 +276,8 @@ class Run {
     if (const PrefixedLine line = find_prefixed_line(beginning); line.number != 0) {
       return unknown_prefix_text(line.number, {line.prefix.begin(), line.prefix.end()});
     }
-    return "this is not a serial line, forwarder stream, pcap, pcapng or hex text; choose a format with "
+    return "this is not a serial line, forwarder stream, pcap, pcapng or hex text; choose a format "
+           "with "
            "--input-format, or try 'tshark -r FILE -w FILE.pcapng'";
   }
 
@@ -435,7 +436,8 @@ void add_input_options(Command& app, InputOptions& options) {
 
 void add_spec_option(Command& app, InputOptions& options, const std::string& names) {
   const std::string by_content =
-      options.spec == kAutoSpec ? "; auto is rubicon, unless another decodes more of what is read" : "";
+      options.spec == kAutoSpec ? "; auto is rubicon, unless another decodes more of what is read"
+                                : "";
   app.add_option(names, options.spec,
                  "Use this protocol above the AM layer: a name (list prints them; none shows bare "
                  "messages), a .ksy file, or several, as a,b: where two have an AM type, the "

@@ -75,7 +75,8 @@ std::string explore_footer() {
          "  rubric explore --calls 2 --loss --flaw accepts_wrong_seq --out broken.rtr\n"
          "  rubric explore --transitions --part join --format dot | dot -Tsvg -o join.svg\n"
          "Exit codes: 0 all properties hold, 1 one is broken or something was never reached,\n"
-         "3 a limit was met first or the flaw was never triggered, 64 usage, 74 the trace cannot be "
+         "3 a limit was met first or the flaw was never triggered, 64 usage, 74 the trace cannot "
+         "be "
          "written.";
 }
 
@@ -403,7 +404,8 @@ void add_bounds(cli::Command& sub, ExploreOptions& options) {
   sub.add_option("--memory", options.memory,
                  "Stop, inconclusive, before the process takes more than this (k, M, G)")
       .check(size, "SIZE");
-  sub.add_flag("--exact", n.exact, "Do not take states for one that differ in nothing that matters");
+  sub.add_flag("--exact", n.exact,
+               "Do not take states for one that differ in nothing that matters");
   sub.add_flag("--no-symmetry", options.no_symmetry,
                "Do not take states for one that differ in which mote or sink is which");
   sub.add_flag("--no-partial-order", options.no_partial_order,

@@ -156,8 +156,8 @@ def tracked(root):
 
 def include_breaches(path, lines):
     area = next((a for a in ALLOWED if f"{path}/".startswith(a + "/")), None)
-    if area is None or path.stem.endswith(("_test", "_bench")) or "_test/" in str(path) \
-            or "_bench/" in str(path):
+    if area is None or path.stem.endswith(("_test", "_bench")) or "/tests/" in str(path) \
+            or "/bench/" in str(path):
         return
     for number, line in enumerate(lines, 1):
         if COMMAND_LINE.match(line) and path.parent != pathlib.PurePath("tools/cli"):
@@ -184,7 +184,7 @@ def wire_breaches(path, lines):
 def print_breaches(path, lines):
     """Lines that print for people without making it harmless."""
     name = str(path)
-    test = "test" in path.stem or "bench" in path.stem or "test" in path.parts[2:-1]
+    test = "test" in path.stem or "bench" in path.stem or "tests" in path.parts
     if path.suffix not in {".cc", ".h"} or test or name in PRINTERS \
             or not name.startswith(PRINTING):
         return

@@ -62,6 +62,4 @@ types:
     seq:
       - id: buffer
         size-eos: true
-        type: strz
-        encoding: ASCII
         doc: Characters, filled up with zeros.

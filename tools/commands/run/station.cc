@@ -252,7 +252,8 @@ bool Station::hear_serial() {
 void Station::look_at_island() {
   const std::uint16_t island = layer_->island();
   if (!is_sink() || island == island_) return;
-  text::print(stderr, "rubric: the host at the serial line changed the island to {}, which was {}\n",
+  text::print(stderr,
+              "rubric: the host at the serial line changed the island to {}, which was {}\n",
               island, island_);
   island_ = island;
 }
