@@ -4,9 +4,7 @@
 #include <poll.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <chrono>
-#include <cstring>
 
 #include "codec/text/shell.h"
 #include "codec/text/text.h"

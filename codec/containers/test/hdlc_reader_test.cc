@@ -16,7 +16,6 @@ using testing::kPaths;
 using testing::kSound;
 using testing::read_all;
 using testing::read_split;
-using testing::to_hex;
 using testing::view;
 
 struct Expected {

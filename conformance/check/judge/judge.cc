@@ -1,7 +1,5 @@
 #include "conformance/check/judge/judge.h"
 
-#include <algorithm>
-
 #include "conformance/check/judge/judge_pass.h"
 #include "conformance/check/links.h"
 #include "conformance/machine/transport.h"
