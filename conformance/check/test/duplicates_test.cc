@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "conformance/check/input/read.h"
-#include "conformance/check/judge/judge.h"
+#include "conformance/check/observation.h"
 
 namespace rubric::check {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "codec/reflect/requirements.h"
 #include "conformance/check/input/read.h"
-#include "conformance/check/judge/judge.h"
+#include "conformance/check/observation.h"
 #include "conformance/explore/counterexample.h"
 #include "conformance/explore/search.h"
 #include "conformance/generated/profiles.h"

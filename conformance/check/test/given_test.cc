@@ -5,7 +5,7 @@
 
 #include "conformance/check/identify/identity.h"
 #include "conformance/check/input/read.h"
-#include "conformance/check/judge/judge.h"
+#include "conformance/check/observation.h"
 #include "conformance/check/test/testing.h"
 
 namespace rubric::check {

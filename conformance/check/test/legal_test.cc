@@ -8,7 +8,7 @@
 
 #include "codec/reflect/requirements.h"
 #include "conformance/check/input/read.h"
-#include "conformance/check/judge/judge.h"
+#include "conformance/check/observation.h"
 #include "conformance/check/test/frames_testing.h"
 #include "conformance/check/test/lawful_testing.h"
 #include "conformance/selftest/lawful_traffic/generate.h"

@@ -13,8 +13,8 @@
 
 #include "codec/runtime/hdlc.h"
 #include "conformance/check/identify/identity.h"
-#include "conformance/check/judge/judge.h"
 #include "conformance/check/message.h"
+#include "conformance/check/observation.h"
 
 namespace rubric::check::read_test {
 namespace {

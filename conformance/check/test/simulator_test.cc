@@ -9,8 +9,8 @@
 
 #include "codec/reflect/requirements.h"
 #include "conformance/check/input/read.h"
-#include "conformance/check/judge/judge.h"
 #include "conformance/check/judge/watch.h"
+#include "conformance/check/observation.h"
 #include "conformance/check/test/frames_testing.h"
 #include "conformance/simulate/recorder.h"
 #include "conformance/simulate/scenarios.h"

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "conformance/check/input/read.h"
-#include "conformance/check/judge/judge.h"
+#include "conformance/check/observation.h"
 #include "conformance/check/test/failures.h"
 #include "conformance/check/test/testing.h"
 #include "conformance/selftest/lawful_traffic/generate.h"

@@ -7,7 +7,7 @@
 
 #include "codec/reflect/requirements.h"
 #include "conformance/check/input/read.h"
-#include "conformance/check/judge/judge.h"
+#include "conformance/check/observation.h"
 
 namespace rubric::check {
 

@@ -4,7 +4,7 @@
 #include <set>
 
 #include "conformance/check/input/read.h"
-#include "conformance/check/judge/judge.h"
+#include "conformance/check/observation.h"
 #include "conformance/check/test/failures.h"
 #include "conformance/check/test/testing.h"
 
