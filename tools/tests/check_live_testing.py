@@ -6,12 +6,12 @@ import pathlib
 import select
 import signal
 import struct
-import subprocess
 import time
 
 import live_testing
-from live_testing import ROOT, RUBRIC, Forwarder
+from live_testing import Forwarder
 from serial_testing import PATIENCE_S, hdlc
+from testing import ROOT, rubric
 
 CAPTURES = pathlib.Path("spec/captures")
 BROKEN_LINE = CAPTURES / "basestation/s06_control_03.from_sink.sfstream"  # J6-CONTENT fails.
@@ -105,9 +105,8 @@ class Checked(live_testing.Running):
 
 
 def offline(*arguments):
-    done = subprocess.run([RUBRIC, "check", *map(str, arguments), "--format", "json"], cwd=ROOT,
-                          capture_output=True, text=True, check=False, timeout=PATIENCE_S)
-    return done.returncode, json.loads(done.stdout) if done.stdout else done.stderr
+    code, out, err = rubric("check", *arguments, "--format", "json", cwd=ROOT)
+    return code, json.loads(out) if out else err
 
 
 def frames_in(path):

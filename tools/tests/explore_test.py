@@ -13,21 +13,19 @@ import re
 import resource
 import subprocess
 import sys
-import tempfile
 import unittest
 
-import testing
-from testing import RUBRIC
+from testing import RUBRIC, Folder, ProgramTest, run
 
 DIAGRAMS = pathlib.Path(__file__).resolve().parent / "expect/transitions.txt"
 FAULTS = ["--loss", "--dup"]
 
 
 def explore(*words):
-    return testing.run("explore", *words, text=True)
+    return run("explore", *words, text=True)
 
 
-class Explore(unittest.TestCase):
+class Explore(Folder):
     def test_says_what_it_found(self):
         done = explore("--motes", "1", "--sinks", "2", *FAULTS)
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -81,13 +79,12 @@ class Explore(unittest.TestCase):
         self.assertIn("verdict      broken", done.stderr)
 
     def test_a_trace_goes_to_its_file(self):
-        with tempfile.TemporaryDirectory() as folder:
-            path = pathlib.Path(folder) / "broken.rtr"
-            done = explore(*FAULTS, "--flaw", "no_fail", "--out", str(path))
-            self.assertEqual(done.returncode, 1)
-            self.assertIn("verdict      broken", done.stdout)
-            self.assertIn("case explore.one_terminal", path.read_text())
-        done = explore(*FAULTS, "--flaw", "no_fail", "--out", f"{folder}/none/x")
+        path = self.folder / "broken.rtr"
+        done = explore(*FAULTS, "--flaw", "no_fail", "--out", path)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("verdict      broken", done.stdout)
+        self.assertIn("case explore.one_terminal", path.read_text())
+        done = explore(*FAULTS, "--flaw", "no_fail", "--out", self.folder / "none/x")
         self.assertEqual(done.returncode, 74)
         self.assertIn("cannot write", done.stderr)
 
@@ -107,14 +104,13 @@ class Explore(unittest.TestCase):
         self.assertEqual(process.wait(), 74)
 
     def test_the_known_weakness_is_reported_and_breaks_nothing(self):
-        with tempfile.TemporaryDirectory() as folder:
-            path = pathlib.Path(folder) / "known.rtr"
-            done = explore(*FAULTS, "--reboot", "--calls", "2", "--out-known", str(path))
-            self.assertEqual(done.returncode, 0, done.stderr)
-            self.assertIn("spec/membership.md", done.stdout)
-            text = path.read_text()
-            self.assertIn("reboot", text)
-            self.assertIn("case explore.known_weakness", text)
+        path = self.folder / "known.rtr"
+        done = explore(*FAULTS, "--reboot", "--calls", "2", "--out-known", path)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("spec/membership.md", done.stdout)
+        text = path.read_text()
+        self.assertIn("reboot", text)
+        self.assertIn("case explore.known_weakness", text)
 
     def test_what_was_never_reached_fails(self):
         # A mote that misreads every ack breaks nothing of this; but no message ends in success.
@@ -177,12 +173,10 @@ class Explore(unittest.TestCase):
                             (["--motes", "4", "--sinks", "4"], "at most 6"),
                             (["--lss"], "did you mean '--loss'")]:
             with self.subTest(words=words):
-                done = explore(*words)
-                self.assertEqual(done.returncode, 64, done.stderr)
-                self.assertIn(text, done.stderr)
+                self.refused(("explore", *words), text)
 
 
-class Transitions(unittest.TestCase):
+class Transitions(ProgramTest):
     def test_are_those_that_were_read(self):
         done = explore("--transitions")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
@@ -222,9 +216,7 @@ class Transitions(unittest.TestCase):
         for words, text in [(["--transitions", "--part", "jion"], "did you mean 'join'"),
                             (["--part", "join"], "--transitions"),
                             (["--transitions", "--motes", "2"], "--transitions")]:
-            done = explore(*words)
-            self.assertEqual(done.returncode, 64, done.stderr)
-            self.assertIn(text, done.stderr)
+            self.refused(("explore", *words), text)
 
 
 if __name__ == "__main__":

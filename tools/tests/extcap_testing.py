@@ -5,28 +5,17 @@ import os
 import pathlib
 import socket
 import subprocess
+import sys
 import tempfile
 import unittest
 
 from serial_testing import PATIENCE_S
+from testing import ROOT, RUBRIC
 
-SERIAL = "spec/captures/firmware/a_join_data.serial.bin"
-FORWARDER = "spec/captures/basestation/s04_acks.from_sink.sfstream"
+EXTCAP = os.path.abspath(sys.argv.pop(1))  # After RUBRIC, which testing.py takes.
+SERIAL = ROOT / "spec/captures/firmware/a_join_data.serial.bin"
+FORWARDER = ROOT / "spec/captures/basestation/s04_acks.from_sink.sfstream"
 PACKET = bytes.fromhex("00ffff000003002514000c")  # A config message.
-
-
-class Given:
-    """Paths from the command line."""
-    rubric = ""
-    extcap = ""
-    root = pathlib.Path()
-
-    @classmethod
-    def take(cls, words):
-        """RUBRIC RUBRIC_EXTCAP PROJECT_FOLDER."""
-        cls.root = pathlib.Path(words.pop(3)).resolve()
-        cls.extcap = os.path.abspath(words.pop(2))
-        cls.rubric = os.path.abspath(words.pop(1))
 
 
 def run(*words, **more):
@@ -35,7 +24,7 @@ def run(*words, **more):
 
 
 def decoded(path):
-    out = run(Given.rubric, "decode", path, "--format", "jsonl").stdout
+    out = run(RUBRIC, "decode", path, "--format", "jsonl").stdout
     return [json.loads(line) for line in out.splitlines()]
 
 

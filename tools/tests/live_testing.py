@@ -1,30 +1,24 @@
 """Helpers of the tests of lines in use: the program, and the other ends of lines.
 
-Their arguments are RUBRIC PROJECT_FOLDER. All of it is on this host, and bounded in time.
+All of it is on this host, and bounded in time.
 """
 
 import json
 import os
-import pathlib
 import select
 import signal
 import socket
 import subprocess
-import sys
-import tempfile
 import threading
 import time
 import unittest
 
 from serial_testing import PACKET_ACK, PATIENCE_S, unframed
-
-RUBRIC = os.path.abspath(sys.argv.pop(1))
-ROOT = pathlib.Path(sys.argv.pop(1)).resolve()
+from testing import ROOT, RUBRIC, Folder, rubric
 
 
 def lines_of(path, *arguments):
-    out = subprocess.run([RUBRIC, "decode", ROOT / path, "--format", "jsonl", *arguments],
-                         capture_output=True, check=False).stdout
+    out = rubric("decode", ROOT / path, "--format", "jsonl", *arguments)[1]
     return [json.loads(line) for line in out.splitlines()]
 
 
@@ -175,14 +169,15 @@ class Mote:
             raise self.error
 
 
-class LiveTest(unittest.TestCase):
+class LiveTest(Folder):
     maxDiff = 2000
     program = Running
 
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="rubric-live-")
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
+    def passes(self, path):
+        """`rubric check` finds no fault in this file. Returns its report."""
+        code, out, _ = rubric("check", path)
+        self.assertEqual(code, 0, out)
+        return out
 
     def started(self, *arguments, **more):
         running = self.program(*arguments, **more)

@@ -92,8 +92,7 @@ class Shrink(Folder):
 
     def test_an_adapter_that_says_yes_to_everything(self):
         """It passes what nobody can pass: what it does otherwise says nothing."""
-        liar = self.folder / "liar.py"
-        liar.write_text(LIAR, encoding="utf-8")
+        liar = self.write("liar.py", LIAR)
         target = f"{sys.executable} {liar}"
         for words in [("shrink", CASE, "--target", target),
                       ("diff", "--target", "machine", "--target", target, "--cases", "j4.*")]:

@@ -83,11 +83,6 @@ class Folder(AnyFolder):
         super().setUp()
         self.fake_program = self.write("fake.py", FAKE)
 
-    def write(self, name, text):
-        path = self.folder / name
-        path.write_text(text)
-        return path
-
     def fake(self, how, roles="mote"):
         return f"exec python3 {self.fake_program} {how} {roles}"
 
