@@ -14,8 +14,6 @@ from testing import on_terminal
 
 
 class Expectations(Folder):
-    ENTRY = "- case: j8.%s\n  requirement: J8\n  message: %s\n  reason: It is in a hurry.\n"
-
     def failing(self):
         report = json.loads(test("--target", self.impatient_mote(), "--rule", "J8",
                                  "--format", "json")[1])
