@@ -20,7 +20,7 @@ from check_live_testing import (BROKEN_LINE, CLEAN_LINE, MANY, OPEN_LINE, SERIAL
                                 of_findings, offline, stamped, standing, until_packet)
 # pylint: disable-next=unused-import
 from live_testing import Forwarder, Running, load_tests  # noqa: F401
-from serial_testing import PATIENCE_S, Pty, hdlc, holds
+from serial_testing import PATIENCE_S, Pty, hdlc, holds, wait_for
 from testing import rubric
 
 
@@ -94,7 +94,7 @@ class CheckLive(CheckTest):
                 self.assertEqual(found["severity"], severity)
                 self.assertIn("What hosts send down its serial line", found["text"])
             frames = frames_in(path)
-            self.grown(kept, lambda: frames_in(kept) > frames)
+            wait_for(lambda: frames_in(kept) > frames, kept)
             code, report, err = running.report()
             self.assertEqual(err, "")
             self.assertEqual((code, report), offline(kept))
@@ -112,7 +112,7 @@ class CheckLive(CheckTest):
                 got.extend(line.read(0.2))
                 return kept.exists() and kept.stat().st_size > 150
 
-            self.grown(kept, captured)
+            wait_for(captured, kept)
             got.extend(line.read(0.5))
             self.assertEqual(got[:len(answer)] if answer else got, answer)
             self.assertEqual(running.end()[2], "")
@@ -187,7 +187,7 @@ class CheckLive(CheckTest):
                              ("remove", "it was renamed or deleted")):
             path = self.write(f"{change}.pcapng", whole)
             running = self.started(path, "--follow")
-            self.grown(path, lambda it=running.process, p=path: holds(it, p))
+            wait_for(lambda it=running.process, p=path: holds(it, p), path)
             if change == "shorten":
                 path.write_bytes(whole[:100])
             elif change == "replace":
@@ -222,7 +222,7 @@ class CheckLive(CheckTest):
                 else:
                     os.write(line.fd, hdlc(block[28:28 + size - 2]))
         frames = len(packets)
-        self.grown(kept, lambda: frames_in(kept) > 0)
+        wait_for(lambda: frames_in(kept) > 0, kept)
         code, report, err = running.report()
         self.assertEqual((code, report), offline(kept, sniffer), err)
         self.assertEqual(report["files"], [str(kept), str(sniffer)])
@@ -244,8 +244,7 @@ class CheckLive(CheckTest):
         server = Forwarder(self)
         running = self.started(f"sf@127.0.0.1:{server.port}", "--reconnect", "--format", "jsonl")
         server.accept(b"U ").close()
-        connection = server.accept(data(BROKEN_LINE))
-        self.addCleanup(connection.close)
+        server.accept(data(BROKEN_LINE))
         self.assertEqual(running.event("found", "J6-CONTENT")["finding"]["frame"], 2)
         code, _, err = running.report()
         self.assertEqual(code, 1)
@@ -282,7 +281,7 @@ class CheckLive(CheckTest):
         path = self.folder / "sniffed"
         os.mkfifo(path)
         running = self.started(path, "--follow", "--format", "jsonl")
-        self.grown(path, lambda: holds(running.process, path))
+        wait_for(lambda: holds(running.process, path), path)
         code, report, err = running.report()
         self.assertEqual((code, report["findings"], err), (3, [], f"rubric: {path}: is empty\n"))
 
@@ -305,7 +304,7 @@ class CheckLive(CheckTest):
         self.assertEqual((code, json.loads(out)["frames"]), (66, 2), err)
         path = self.write("whole.pcapng", data(TWO_TAPS))
         running = Running("stats", path, "--follow", "--format", "json")
-        self.grown(path, lambda: holds(running.process, path))
+        wait_for(lambda: holds(running.process, path), path)
         time.sleep(0.5)
         code, out, err = running.end()
         self.assertEqual((code, json.loads(out)["frames"], err), (0, 11, ""))
@@ -317,8 +316,7 @@ class CheckLive(CheckTest):
         running = self.started("--format", "jsonl", stdin=slave,
                                env={**os.environ, "MOTECOM": f"sf@127.0.0.1:{server.port}"})
         os.close(slave)
-        connection = server.accept(data(BROKEN_LINE))
-        self.addCleanup(connection.close)
+        server.accept(data(BROKEN_LINE))
         running.event("found", "J6-CONTENT")
         self.assertEqual(running.report()[0], 1)
 

@@ -147,8 +147,7 @@ class Live(LiveTest):
         running = self.started("decode", "--format", "jsonl", "--count", "1", stdin=slave,
                                env={**os.environ, "MOTECOM": f"sf@127.0.0.1:{server.port}"})
         os.close(slave)
-        connection = server.accept((ROOT / FORWARDER).read_bytes())
-        self.addCleanup(connection.close)
+        server.accept((ROOT / FORWARDER).read_bytes())
         self.assertEqual(len(running.lines(1)), 1)
         self.assertEqual(running.end(None)[0], 0)
 

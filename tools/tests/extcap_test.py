@@ -12,8 +12,8 @@ import signal
 import time
 import unittest
 
-from extcap_testing import (EXTCAP, FORWARDER, PACKET, SERIAL, Base, Server, decoded, meaning,
-                            run)
+from extcap_testing import EXTCAP, FORWARDER, PACKET, SERIAL, Base, decoded, meaning, run
+from live_testing import Forwarder
 from serial_testing import PATIENCE_S, Pty, hdlc, wait_for
 from testing import RUBRIC
 
@@ -150,11 +150,11 @@ class Captures(Base):
         return decoded(path)
 
     def test_a_serial_forwarder_until_sigterm(self):
-        server = Server(self)
+        server = Forwarder(self)
         process = self.capture(f"sf@127.0.0.1:{server.port}", *UNKNOWN)
         fd = self.reader()
         self.addCleanup(os.close, fd)
-        connection = server.forward(self, FORWARDER.read_bytes())
+        connection = server.accept(FORWARDER.read_bytes())
         wanted = decoded(FORWARDER)
         self.read(fd, lambda _: len(self.records()) == len(wanted))
         self.assertEqual(meaning(self.records()), meaning(wanted))
@@ -182,7 +182,7 @@ class Captures(Base):
         line = Pty(self)
         place = self.folder / "my mote"
         place.symlink_to(line.name)
-        server = Server(self)
+        server = Forwarder(self)
         frame = hdlc(b"\x44\x2a" + PACKET)
         for source in (f"serial@{place}:telosb", f"network@127.0.0.1:{server.port}"):
             with self.subTest(source):
@@ -191,7 +191,7 @@ class Captures(Base):
                                        *(["--listen-only"] if "network" in source else []))
                 fd = self.reader()
                 if "network" in source:
-                    connection = server.accept(self)
+                    connection = server.line()
                     connection.sendall(frame)
                 else:
                     self.write_until_read(line, frame, fd)
@@ -221,12 +221,12 @@ class Captures(Base):
                 self.got += os.read(fd, 1 << 16)
 
     def test_a_capture_filter(self):
-        server = Server(self)
+        server = Forwarder(self)
         self.capture(f"network@127.0.0.1:{server.port}", "--extcap-capture-filter",
                      "message==serial_joined || error")
         fd = self.reader()
         self.addCleanup(os.close, fd)
-        connection = server.accept(self)
+        connection = server.line()
         connection.sendall(SERIAL.read_bytes() + hdlc(b"\x45" + PACKET, wrong=1))
         wanted = [one for one in decoded(SERIAL) if one["message"] == "serial_joined"]
         self.assertGreater(len(wanted), 1)
@@ -236,12 +236,12 @@ class Captures(Base):
 
     def test_a_reader_that_goes_ends_it(self):
         """Even when nothing comes that could be written."""
-        server = Server(self)
+        server = Forwarder(self)
         for more in ([], ["--reconnect"]):
             with self.subTest(more):
                 process = self.capture(f"sf@127.0.0.1:{server.port}", *more)
                 fd = self.reader()
-                connection = server.forward(self, b"")
+                connection = server.accept(b"")
                 if more:  # Lost, and waiting for its return.
                     server.listener.close()
                     connection.close()
@@ -288,11 +288,11 @@ class Captures(Base):
         self.assertIn("capture filter: ", err)
 
     def test_a_peer_that_goes(self):
-        server = Server(self)
+        server = Forwarder(self)
         process = self.capture(f"sf@127.0.0.1:{server.port}")
         fd = self.reader()
         self.addCleanup(os.close, fd)
-        server.forward(self, FORWARDER.read_bytes()).close()
+        server.accept(FORWARDER.read_bytes()).close()
         self.read(fd, lambda _: False)
         code, err = self.ended(process)
         self.assertEqual(code, 66)

@@ -3,7 +3,6 @@
 import json
 import os
 import pathlib
-import socket
 import subprocess
 import sys
 import tempfile
@@ -30,29 +29,6 @@ def decoded(path):
 
 def meaning(records):
     return [(record["path"], record["fields"], record["error"]) for record in records]
-
-
-class Server:
-    """Whom a capture connects to."""
-
-    def __init__(self, test):
-        self.listener = socket.create_server(("127.0.0.1", 0))
-        self.listener.settimeout(PATIENCE_S)
-        self.port = self.listener.getsockname()[1]
-        test.addCleanup(self.listener.close)
-
-    def accept(self, test):
-        connection, _ = self.listener.accept()
-        connection.settimeout(PATIENCE_S)
-        test.addCleanup(connection.close)
-        return connection
-
-    def forward(self, test, data):
-        """As a serial forwarder, from its handshake on."""
-        connection = self.accept(test)
-        test.assertEqual(connection.recv(2), b"U ")
-        connection.sendall(data)
-        return connection
 
 
 class Base(unittest.TestCase):

@@ -14,8 +14,9 @@ import signal
 import time
 import unittest
 
-from extcap_testing import EXTCAP, FORWARDER, PACKET, SERIAL, Base, Server, decoded, run
-from serial_testing import PATIENCE_S, Pty, hdlc, wait_for
+from extcap_testing import EXTCAP, FORWARDER, PACKET, SERIAL, Base, decoded, run
+from live_testing import Forwarder
+from serial_testing import PATIENCE_S, Pty, hdlc, read_until, wait_for
 from testing import ROOT, RUBRIC
 
 CONFIG = pathlib.Path(".config/wireshark/extcap/rubric-extcap")
@@ -38,17 +39,10 @@ class Wireshark(Base):
                             *more)
 
     def lines(self, process, count):
-        got = b""
-        deadline = time.monotonic() + PATIENCE_S
-        while got.count(b"\n") < count:
-            left = max(0, deadline - time.monotonic())
-            more = b""
-            if select.select([process.stdout], [], [], left)[0]:
-                more = os.read(process.stdout.fileno(), 1 << 16)
-            if not more:
-                process.kill()
-                raise AssertionError(f"{got.count(10)} of {count} lines: {self.ended(process)}")
-            got += more
+        got, came = read_until(process.stdout.fileno(), lambda got: got.count(b"\n") >= count)
+        if not came:
+            process.kill()
+            raise AssertionError(f"{got.count(10)} of {count} lines: {self.ended(process)}")
         return [line.split("|") for line in got.decode().splitlines()]
 
     def nothing_left(self, mark):
@@ -80,10 +74,10 @@ class Wireshark(Base):
             self.assertIn(f"#extcap.rubric.{name}:", done.stdout)
 
     def test_a_serial_forwarder(self):
-        server = Server(self)
+        server = Forwarder(self)
         address = f"sf@127.0.0.1:{server.port}"
         process = self.tshark(address)
-        connection = server.forward(self, FORWARDER.read_bytes())
+        connection = server.accept(FORWARDER.read_bytes())
         wanted = decoded(FORWARDER)
         lines = self.lines(process, len(wanted))  # While the source stays open.
         self.assertIsNone(process.poll())
@@ -100,11 +94,11 @@ class Wireshark(Base):
         self.nothing_left(address)
 
     def test_a_serial_line_by_tcp(self):
-        server = Server(self)
+        server = Forwarder(self)
         address = f"network@127.0.0.1:{server.port}"
         process = self.tshark("", "-o", f"extcap.rubric.othersource:{address}", "-o",
                               "extcap.rubric.listenonly:true")
-        connection = server.accept(self)
+        connection = server.line()
         connection.sendall(hdlc(b"\x44\x2a" + PACKET))
         connection.sendall(hdlc(b"\x45" + PACKET, wrong=0x10))
         connection.sendall(SERIAL.read_bytes()[:3000])
@@ -148,9 +142,9 @@ class Wireshark(Base):
             self.assertIn("0 packets captured", err)
 
     def test_a_peer_that_goes(self):
-        server = Server(self)
+        server = Forwarder(self)
         process = self.tshark(f"sf@127.0.0.1:{server.port}")
-        server.forward(self, FORWARDER.read_bytes()).close()
+        server.accept(FORWARDER.read_bytes()).close()
         wanted = decoded(FORWARDER)
         self.assertEqual(len(self.lines(process, len(wanted))), len(wanted))
         self.assertIn("the other end closed it", self.ended(process)[1])

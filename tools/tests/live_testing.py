@@ -10,10 +10,9 @@ import signal
 import socket
 import subprocess
 import threading
-import time
 import unittest
 
-from serial_testing import PACKET_ACK, PATIENCE_S, unframed
+from serial_testing import PACKET_ACK, PATIENCE_S, read_until, unframed, wait_for
 from testing import ROOT, RUBRIC, Folder, rubric
 
 
@@ -39,16 +38,11 @@ class Running:
 
     def text_lines(self, count):
         """The next lines."""
-        deadline = time.monotonic() + PATIENCE_S
-        while self.read.count(b"\n") < count:
-            left = max(0, deadline - time.monotonic())
-            more = b""
-            if select.select([self.process.stdout], [], [], left)[0]:
-                more = os.read(self.process.stdout.fileno(), 1 << 16)
-            if not more:
-                self.process.kill()
-                raise AssertionError(f"{self.read.count(10)} of {count} lines: {self.end(None)}")
-            self.read += more
+        self.read, came = read_until(self.process.stdout.fileno(),
+                                     lambda got: got.count(b"\n") >= count, self.read)
+        if not came:
+            self.process.kill()
+            raise AssertionError(f"{self.read.count(10)} of {count} lines: {self.end(None)}")
         *found, self.read = self.read.split(b"\n", count)
         return [line.decode() for line in found]
 
@@ -75,11 +69,18 @@ class Forwarder:
         self.listener = socket.create_server(("127.0.0.1", port))
         self.listener.settimeout(PATIENCE_S)
         self.port = self.listener.getsockname()[1]
+        self.test = test
         test.addCleanup(self.listener.close)
 
-    def accept(self, data):
+    def line(self):
+        """A connection without a handshake, as one of a serial line has none."""
         connection, _ = self.listener.accept()
         connection.settimeout(PATIENCE_S)
+        self.test.addCleanup(connection.close)
+        return connection
+
+    def accept(self, data):
+        connection = self.line()
         if connection.recv(2) != b"U ":
             raise AssertionError("no handshake")
         connection.sendall(data)
@@ -95,11 +96,7 @@ class Flood(threading.Thread):
         self.data = data * (1 + (1 << 18) // len(data))
         self.rounds = 0
         self.start()
-        deadline = time.monotonic() + PATIENCE_S
-        while self.rounds < 4:
-            if time.monotonic() > deadline:
-                raise AssertionError("nobody reads")
-            time.sleep(0.01)
+        wait_for(lambda: self.rounds >= 4, "somebody reads")
 
     def run(self):
         try:

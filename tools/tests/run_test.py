@@ -8,17 +8,15 @@ minute.
 
 import fcntl
 import json
-import os
 import pathlib
 import re
-import select
 import socket
 import subprocess
 import time
 import unittest
 
 from live_testing import Flood, LiveTest, Running, lines_of
-from serial_testing import PATIENCE_S
+from serial_testing import PATIENCE_S, read_until
 from station_load import PACKET, message
 from testing import ROOT, RUBRIC, rubric
 
@@ -83,15 +81,11 @@ class Node(Running):
 
     def waits_for(self, pattern):
         """The first group of the next text on stderr that matches."""
-        deadline = time.monotonic() + PATIENCE_S
-        while not (found := re.search(pattern, self.said)):
-            left = max(0, deadline - time.monotonic())
-            more = b""
-            if select.select([self.process.stderr], [], [], left)[0]:
-                more = os.read(self.process.stderr.fileno(), 4096)
-            if not more:
-                raise AssertionError(f"no {pattern} in {self.said}")
-            self.said += more
+        self.said, came = read_until(self.process.stderr.fileno(),
+                                     lambda said: re.search(pattern, said), self.said)
+        if not came:
+            raise AssertionError(f"no {pattern} in {self.said}")
+        found = re.search(pattern, self.said)
         self.said = self.said[found.end():]
         return found.group(1).decode()
 

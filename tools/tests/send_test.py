@@ -18,7 +18,7 @@ import unittest
 from live_testing import Mote, lines_of
 from send_testing import (CLEAN, LONG_MS, NOT_SENT, OUTPUT, Base, config, confirms, line,
                           send)
-from serial_testing import ACK, PACKET_ACK, PACKET_NOACK, PATIENCE_S, Pty, hdlc
+from serial_testing import ACK, PACKET_ACK, PACKET_NOACK, PATIENCE_S, Pty, hdlc, wait_for
 from testing import rubric
 
 DEMO = "spec/captures/basestation/s04_acks.from_sink.sfstream"
@@ -195,9 +195,7 @@ class Serial(Base):
                                "--keep-going", stdin=subprocess.PIPE)
         running.process.stdin.write((line(1) + line(2)).encode())
         running.process.stdin.close()
-        deadline = time.monotonic() + PATIENCE_S
-        while not mote.packets and time.monotonic() < deadline:
-            time.sleep(0.01)
+        wait_for(lambda: mote.packets, "a packet comes")
         code, out, err = running.end(signal.SIGTERM)
         self.assertEqual(code, NOT_SENT)
         self.assertIn("not confirmed after 1 try", out)

@@ -23,7 +23,8 @@ BROKER = sys.argv.pop(2)
 
 from live_testing import LiveTest  # noqa: E402 pylint: disable=wrong-import-position
 from run_test import KNOCK, Node  # noqa: E402 pylint: disable=wrong-import-position
-from serial_testing import PATIENCE_S, held_port  # noqa: E402 pylint: disable=wrong-import-position
+# pylint: disable-next=wrong-import-position
+from serial_testing import PATIENCE_S, held_port, wait_for  # noqa: E402
 from testing import ROOT, rubric  # noqa: E402 pylint: disable=wrong-import-position
 
 SCHEMA = json.loads((ROOT / "spec/space/schema.json").read_text(encoding="utf-8"))
@@ -144,12 +145,9 @@ class Broker:
     def start(self):
         self.process = subprocess.Popen([BROKER, "-c", self.file], stdout=subprocess.DEVNULL,
                                         stderr=subprocess.DEVNULL)
-        deadline = time.monotonic() + PATIENCE_S
-        while subprocess.run([*self.client("mosquitto_pub"), "-t", "up", "-n"],
-                             capture_output=True, check=False).returncode:
-            if time.monotonic() > deadline:
-                raise AssertionError("no broker")
-            time.sleep(0.05)
+        wait_for(lambda: not subprocess.run([*self.client("mosquitto_pub"), "-t", "up", "-n"],
+                                            capture_output=True, check=False).returncode,
+                 "the broker is there")
 
     def stop(self):
         if self.process:
