@@ -91,9 +91,7 @@ class Text(Folder):
         lines = log.read_text().splitlines(keepends=True)
         silent = self.write("silent reply.rtr", "".join(
             line for line in lines if "join_reply(" not in line or "mote_addr=4" not in line))
-        code, out, _ = check(*complete, silent)
-        self.assertEqual(code, 1)
-        self.assertIn("FAIL J4-JOINED, mote 4, ", out)
+        out = self.shows(("check", *complete, silent), "FAIL J4-JOINED, mote 4, ", code=1)
         self.assertGreater(self.run_again(out), 0)
 
     def run_again(self, out):
@@ -394,9 +392,8 @@ class Inputs(Folder):
             self.assertIn(words, out)
 
     def test_stdin(self):
-        code, out, _ = check("-", stdin=WRONG_SEQ.read_bytes())
-        self.assertEqual(code, 1)
-        self.assertIn("FAIL J4-SEQ, mote 2, frame 3", out)
+        self.shows(("check", "-"), "FAIL J4-SEQ, mote 2, frame 3", code=1,
+                   stdin=WRONG_SEQ.read_bytes())
         self.assertEqual(check("-")[::2], (3, "rubric: stdin: is empty\n"))
 
     def test_frames(self):

@@ -307,9 +307,7 @@ class Explain(ProgramTest):
             code, out, err = rubric("explain", name)
             self.assertEqual((code, err), (0, ""), name)
             self.assertIn(says, out.decode())
-        code, out, _ = rubric("explain", "--spec", "oscilloscope", "oscilloscope_msg")
-        self.assertEqual(code, 0)
-        self.assertIn("AM 147 on serial", out.decode())
+        self.shows(("explain", "--spec", "oscilloscope", "oscilloscope_msg"), "AM 147 on serial")
 
     def test_a_group_of_rules(self):
         code, out, err = rubric("explain", "j4")
@@ -419,15 +417,9 @@ class Explain(ProgramTest):
                 self.assertEqual(bytes.fromhex(back.decode()), bytes.fromhex(hexadecimal))
 
     def test_frames(self):
-        code, out, _ = rubric("explain", *CONFIG_PACKET.decode().split())
-        self.assertEqual(code, 0)
-        self.assertIn("set_island_id", out.decode())
-        code, out, _ = rubric("explain", "--as", "config", "0a000c")
-        self.assertEqual(code, 0)
-        self.assertIn("the message config alone", out.decode())
-        code, out, _ = rubric("explain", "--as", "config", "0a00")
-        self.assertEqual(code, 1)
-        self.assertIn("WIRE-CONFIG (MUST)", out.decode())
+        self.shows(("explain", *CONFIG_PACKET.decode().split()), "set_island_id")
+        self.shows(("explain", "--as", "config", "0a000c"), "the message config alone")
+        self.shows(("explain", "--as", "config", "0a00"), "WIRE-CONFIG (MUST)", code=1)
 
     def test_unknown(self):
         for args, says in [(["net_mesg"], "did you mean 'net_msg'?"),
@@ -456,7 +448,7 @@ class Simulate(ProgramTest):
             self.assertIn(f"rubric: cannot write {target}: {why}", err)
 
 
-class Messages(unittest.TestCase):
+class Messages(ProgramTest):
     def test_text_and_json(self):
         code, out, _ = rubric("messages")
         self.assertEqual(code, 0)
@@ -470,9 +462,7 @@ class Messages(unittest.TestCase):
                          ([28], 14, 114))
         self.assertLessEqual(max(map(len, text.splitlines())), 110)
         self.assertRegex(text, r"(?m)^35  updates .* app_msg ")
-        code, out, _ = rubric("messages", "--spec", "oscilloscope")
-        self.assertEqual(code, 0)
-        self.assertIn("oscilloscope_msg", out.decode())
+        self.shows(("messages", "--spec", "oscilloscope"), "oscilloscope_msg")
         self.assertEqual(rubric("messages", "--spec", "nothing")[0], 64)
 
 

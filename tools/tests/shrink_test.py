@@ -78,17 +78,13 @@ class Shrink(Folder):
             self.assertEqual(code, 0, out + err)
 
     def test_profile(self):
-        code, out, err = run("shrink", str(ROOT / "conformance/cases/j8.rtr"), "--target",
-                             "machine", "--profile", "deployed", "--case", "j8.at_most_five")
-        self.assertEqual(code, 0, err)
-        self.assertIn("[J8-LIMIT", out)
+        self.shows(("shrink", str(ROOT / "conformance/cases/j8.rtr"), "--target", "machine",
+                    "--profile", "deployed", "--case", "j8.at_most_five"), "[J8-LIMIT")
 
     def test_a_seed_is_in_what_is_made(self):
         with moody() as target:
             self.assertEqual(run("shrink", CASE, "--target", target)[0], 3)
-            code, out, err = run("shrink", CASE, "--target", target, "--seed", "7")
-            self.assertEqual(code, 0, err)
-            self.assertIn("%seed 7\n", out)
+            self.shows(("shrink", CASE, "--target", target, "--seed", "7"), "%seed 7\n")
 
     def test_an_adapter_that_says_yes_to_everything(self):
         """It passes what nobody can pass: what it does otherwise says nothing."""
@@ -119,23 +115,15 @@ class Diff(ProgramTest):
         with moody() as target:
             words = ["diff", "--target", "machine", "--target", target, "--cases", "j4.*"]
             self.assertEqual(run(*words)[0], 0)
-            code, out, err = run(*words, "--seed", "7")
-            self.assertEqual(code, 1, err)
-            self.assertIn("%seed 7\n", out)
+            self.shows((*words, "--seed", "7"), "%seed 7\n", code=1)
 
     def test_a_mutant_and_the_machine(self):
-        code, out, err = run("diff", "--target", "machine", "--target", BROKEN,
-                             "--rule", "J4")
-        self.assertEqual(code, 1, err)
-        self.assertIn(".difference", out)
-        self.assertIn("; A, ", out)
-        self.assertIn("; B, ", out)
+        self.shows(("diff", "--target", "machine", "--target", BROKEN, "--rule", "J4"),
+                   ".difference", "; A, ", "; B, ", code=1)
 
     def test_the_profiles(self):
-        code, out, err = run("diff", "--target", "machine", "--target", "machine", "--profile",
-                             "paper", "--profile", "deployed", "--rule", "J8")
-        self.assertEqual(code, 1, err)
-        self.assertIn("J8", out)
+        self.shows(("diff", "--target", "machine", "--target", "machine", "--profile", "paper",
+                    "--profile", "deployed", "--rule", "J8"), "J8", code=1)
 
     def test_a_target_and_itself(self):
         code, out, err = run("diff", "--target", "machine", "--target", MACHINE, "--cases", "j*")

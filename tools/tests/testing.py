@@ -63,7 +63,15 @@ def on_terminal(*words, env, width=0):
 
 
 class ProgramTest(unittest.TestCase):
-    """Tests of the program's errors."""
+    """Tests of what the program says."""
+
+    def shows(self, words, *texts, code=0, **how):
+        """The program ends with that exit code and shows these texts. Returns its output."""
+        got, out, err = rubric(*words, **how)
+        self.assertEqual(got, code, (words, out, err))
+        for text in texts:
+            self.assertIn(text, out)
+        return out
 
     def refused(self, words, says, code=64, **how):
         """The program ends with that exit code, without output, and says this among its errors."""
