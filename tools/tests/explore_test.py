@@ -80,9 +80,8 @@ class Explore(Folder):
 
     def test_a_trace_goes_to_its_file(self):
         path = self.folder / "broken.rtr"
-        done = explore(*FAULTS, "--flaw", "no_fail", "--out", path)
-        self.assertEqual(done.returncode, 1)
-        self.assertIn("verdict      broken", done.stdout)
+        self.shows(("explore", *FAULTS, "--flaw", "no_fail", "--out", path), "verdict      broken",
+                   code=1)
         self.assertIn("case explore.one_terminal", path.read_text())
         done = explore(*FAULTS, "--flaw", "no_fail", "--out", self.folder / "none/x")
         self.assertEqual(done.returncode, 74)
@@ -105,9 +104,8 @@ class Explore(Folder):
 
     def test_the_known_weakness_is_reported_and_breaks_nothing(self):
         path = self.folder / "known.rtr"
-        done = explore(*FAULTS, "--reboot", "--calls", "2", "--out-known", path)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("spec/membership.md", done.stdout)
+        self.shows(("explore", *FAULTS, "--reboot", "--calls", "2", "--out-known", path),
+                   "spec/membership.md")
         text = path.read_text()
         self.assertIn("reboot", text)
         self.assertIn("case explore.known_weakness", text)
@@ -122,10 +120,9 @@ class Explore(Folder):
 
     def test_a_flaw_that_never_acts_decides_nothing(self):
         # One call has no old replies that the mote could mistake for its own.
-        done = explore(*FAULTS, "--flaw", "accepts_wrong_seq")
-        self.assertEqual(done.returncode, 3, done.stdout)
-        self.assertIn("verdict      inconclusive: flaw accepts_wrong_seq never acted", done.stdout)
-        self.assertIn("--calls 2", done.stdout)
+        self.shows(("explore", *FAULTS, "--flaw", "accepts_wrong_seq"),
+                   "verdict      inconclusive: flaw accepts_wrong_seq never acted", "--calls 2",
+                   code=3)
         found = json.loads(explore(*FAULTS, "--flaw", "accepts_wrong_seq", "--format",
                                    "json").stdout)
         self.assertEqual(found["verdict"], "inconclusive")
