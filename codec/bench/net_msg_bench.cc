@@ -4,14 +4,61 @@
 
 #include <cstdlib>
 #include <cstring>
+#include <random>
+#include <vector>
 
-#include "codec/bench/frames.h"
 #include "codec/generated/rubicon/all.h"
 
 namespace rubric::rubicon {
 namespace {
 
-using bench::Frame;
+// Input: net_msg frames as a sink puts them on the serial line.
+
+// Kinds of message bodies.
+enum Mix : int { kUpdates = 0, kReadUpdates = 1, kSynaptic = 2, kMixed = 3 };
+constexpr std::size_t kFrameCount = 1024;
+using Frame = std::vector<std::uint8_t>;
+
+Frame make_frame(int kind, std::mt19937& random) {
+  Frame f(114);  // Stale bytes fill it up.
+  for (std::uint8_t& byte : f) byte = static_cast<std::uint8_t>(random());
+  f[6] = 0;  // From a mote.
+  f[8] &= 1;
+  f[12] = 3;
+  f[13] = 10;
+  const auto n = static_cast<std::uint8_t>(1 + random() % 10);
+  switch (kind) {
+    case kUpdates:
+      f[14] = 35;
+      f[15] = n;
+      f[11] = static_cast<std::uint8_t>(4 + 4 * n);
+      break;
+    case kReadUpdates:
+      f[14] = 36;
+      f[11] = 7;
+      break;
+    case kSynaptic:
+      f[12] = 1;
+      f[13] = 11;
+      f[11] = static_cast<std::uint8_t>(2 + 4 * n);
+      break;
+    default:  // An application's own.
+      f[13] = 8;
+      f[11] = 20;
+      break;
+  }
+  return f;
+}
+
+std::vector<Frame> make_frames(int mix) {
+  std::mt19937 random(7);
+  std::vector<Frame> out;
+  for (std::size_t i = 0; i < kFrameCount; ++i) {
+    const int kind = mix == kMixed ? static_cast<int>(random() % 4) : mix;
+    out.push_back(make_frame(kind, random));
+  }
+  return out;
+}
 
 struct __attribute__((packed)) HandNetMsg {
   std::uint16_t dest_pid, dest_devid, src_pid, src_devid;
@@ -129,23 +176,23 @@ bool view_read(Bytes bytes) {
 }
 
 void BM_ReadByHand(benchmark::State& state) {
-  const std::vector<Frame> frames = bench::make_frames(static_cast<int>(state.range(0)));
+  const std::vector<Frame> frames = make_frames(static_cast<int>(state.range(0)));
   std::size_t i = 0;
   for (auto _ : state) {
-    const Frame& f = frames[i++ % bench::kFrameCount];
+    const Frame& f = frames[i++ % kFrameCount];
     if (!hand_read(f.data(), f.size())) std::abort();
   }
 }
 void BM_ReadByView(benchmark::State& state) {
-  const std::vector<Frame> frames = bench::make_frames(static_cast<int>(state.range(0)));
+  const std::vector<Frame> frames = make_frames(static_cast<int>(state.range(0)));
   std::size_t i = 0;
   for (auto _ : state) {
-    const Frame& f = frames[i++ % bench::kFrameCount];
+    const Frame& f = frames[i++ % kFrameCount];
     if (!view_read(Bytes(f.data(), f.size()))) std::abort();
   }
 }
-BENCHMARK(BM_ReadByHand)->DenseRange(bench::kUpdates, bench::kMixed);
-BENCHMARK(BM_ReadByView)->DenseRange(bench::kUpdates, bench::kMixed);
+BENCHMARK(BM_ReadByHand)->DenseRange(kUpdates, kMixed);
+BENCHMARK(BM_ReadByView)->DenseRange(kUpdates, kMixed);
 
 // Values unknown to the compiler.
 struct Input {
@@ -228,7 +275,7 @@ BENCHMARK(BM_WriteByBuilder);
 
 // Checks a whole active message after the deframer, header and payload, as a pipeline does.
 void BM_ValidateActiveMessage(benchmark::State& state) {
-  std::vector<Frame> frames = bench::make_frames(static_cast<int>(state.range(0)));
+  std::vector<Frame> frames = make_frames(static_cast<int>(state.range(0)));
   for (Frame& f : frames) {
     const std::uint8_t kHeader[] = {0, 0xff, 0xff, 0, 0, 114, 0, 28};
     f.insert(f.begin(), kHeader, kHeader + 8);
@@ -236,7 +283,7 @@ void BM_ValidateActiveMessage(benchmark::State& state) {
   std::size_t i = 0;
   std::size_t bytes = 0;
   for (auto _ : state) {
-    const Frame& f = frames[i++ % bench::kFrameCount];
+    const Frame& f = frames[i++ % kFrameCount];
     const Result<RubiconView> view = RubiconView::parse(Bytes(f.data(), f.size()));
     if (!view) std::abort();
     if (view->payload_kind() != RubiconView::PayloadKind::kNetMsg) std::abort();
@@ -245,7 +292,7 @@ void BM_ValidateActiveMessage(benchmark::State& state) {
   }
   state.SetBytesProcessed(static_cast<std::int64_t>(bytes));
 }
-BENCHMARK(BM_ValidateActiveMessage)->DenseRange(bench::kUpdates, bench::kMixed);
+BENCHMARK(BM_ValidateActiveMessage)->DenseRange(kUpdates, kMixed);
 
 }  // namespace
 }  // namespace rubric::rubicon

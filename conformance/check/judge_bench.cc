@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "conformance/check/input/read.h"
-#include "conformance/check/judge/judge.h"
+#include "conformance/check/observation.h"
 #include "conformance/simulate/recorder.h"
 #include "conformance/simulate/scenarios.h"
 #include "conformance/simulate/simulation.h"

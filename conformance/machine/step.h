@@ -1,7 +1,6 @@
 // The reference machine: one node of the RUBICON Communication Layer, without I/O, clock or chance.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 
 #include "conformance/machine/actions.h"

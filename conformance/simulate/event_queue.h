@@ -5,7 +5,6 @@
 #include <functional>
 #include <queue>
 #include <utility>
-#include <vector>
 
 #include "codec/frame_generator/random.h"
 #include "conformance/machine/ticks.h"

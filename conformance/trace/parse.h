@@ -1,7 +1,6 @@
 // Reads .rtr text. The grammar is spec/trace/rtr.ebnf.
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>

@@ -10,7 +10,7 @@
 #include "conformance/check/input/duplicates.h"
 #include "conformance/check/input/read.h"
 #include "conformance/check/judge/findings.h"
-#include "conformance/check/judge/judge.h"
+#include "conformance/check/observation.h"
 #include "conformance/check/report/html.h"
 #include "conformance/check/report/json.h"
 #include "conformance/check/report/junit.h"

@@ -10,7 +10,7 @@
 
 #include "conformance/check/input/duplicates.h"
 #include "conformance/check/input/read.h"
-#include "conformance/check/judge/judge.h"
+#include "conformance/check/observation.h"
 #include "fuzz/support/input.h"
 #include "fuzz/support/require.h"
 

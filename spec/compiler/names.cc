@@ -12,108 +12,16 @@ namespace {
 constexpr std::size_t kIdMax = 64;
 
 // Words that a generated file could not use as a name: keywords of C++ and macros of C headers.
-constexpr std::array<std::string_view, 101> kReserved{"alignas",
-                                                      "alignof",
-                                                      "and",
-                                                      "and_eq",
-                                                      "asm",
-                                                      "assert",
-                                                      "auto",
-                                                      "bitand",
-                                                      "bitor",
-                                                      "bool",
-                                                      "break",
-                                                      "case",
-                                                      "catch",
-                                                      "char",
-                                                      "char16_t",
-                                                      "char32_t",
-                                                      "char8_t",
-                                                      "class",
-                                                      "co_await",
-                                                      "co_return",
-                                                      "co_yield",
-                                                      "compl",
-                                                      "concept",
-                                                      "const",
-                                                      "const_cast",
-                                                      "consteval",
-                                                      "constexpr",
-                                                      "constinit",
-                                                      "continue",
-                                                      "decltype",
-                                                      "default",
-                                                      "delete",
-                                                      "do",
-                                                      "double",
-                                                      "dynamic_cast",
-                                                      "else",
-                                                      "enum",
-                                                      "errno",
-                                                      "explicit",
-                                                      "export",
-                                                      "extern",
-                                                      "false",
-                                                      "float",
-                                                      "for",
-                                                      "friend",
-                                                      "goto",
-                                                      "if",
-                                                      "inline",
-                                                      "int",
-                                                      "linux",
-                                                      "long",
-                                                      "mutable",
-                                                      "namespace",
-                                                      "new",
-                                                      "noexcept",
-                                                      "not",
-                                                      "not_eq",
-                                                      "nullptr",
-                                                      "offsetof",
-                                                      "operator",
-                                                      "or",
-                                                      "or_eq",
-                                                      "private",
-                                                      "protected",
-                                                      "public",
-                                                      "register",
-                                                      "reinterpret_cast",
-                                                      "requires",
-                                                      "return",
-                                                      "short",
-                                                      "signed",
-                                                      "sizeof",
-                                                      "static",
-                                                      "static_assert",
-                                                      "static_cast",
-                                                      "stderr",
-                                                      "stdin",
-                                                      "stdout",
-                                                      "struct",
-                                                      "switch",
-                                                      "template",
-                                                      "this",
-                                                      "thread_local",
-                                                      "throw",
-                                                      "to_i",
-                                                      "true",
-                                                      "try",
-                                                      "typedef",
-                                                      "typeid",
-                                                      "typename",
-                                                      "union",
-                                                      "unix",
-                                                      "unsigned",
-                                                      "using",
-                                                      "virtual",
-                                                      "void",
-                                                      "volatile",
-                                                      "wchar_t",
-                                                      "while",
-                                                      "xor",
-                                                      "xor_eq"};
-static_assert(std::is_sorted(kReserved.begin(), kReserved.end()));
+constexpr std::string_view kReserved =
+    " alignas alignof and and_eq asm assert auto bitand bitor bool break case catch char "
+    "char16_t char32_t char8_t class co_await co_return co_yield compl concept const "
+    "const_cast consteval constexpr constinit continue decltype default delete do double "
+    "dynamic_cast else enum errno explicit export extern false float for friend goto if inline "
+    "int linux long mutable namespace new noexcept not not_eq nullptr offsetof operator or "
+    "or_eq private protected public register reinterpret_cast requires return short signed "
+    "sizeof static static_assert static_cast stderr stdin stdout struct switch template this "
+    "thread_local throw to_i true try typedef typeid typename union unix unsigned using "
+    "virtual void volatile wchar_t while xor xor_eq ";
 
 // Namespaces of the generated code that a spec's own namespace would hide.
 constexpr std::array<std::string_view, 6> kReservedSpecs{"detail", "reflect", "req",
@@ -138,7 +46,7 @@ void check_id(Diagnostics& diagnostics, const SourcePlace& place, std::string_vi
   } else if (id.size() > kIdMax) {
     diagnostics.error(place, fmt::format("name {}", quote(id)),
                       fmt::format("at most {} characters", kIdMax));
-  } else if (!what.empty() && std::binary_search(kReserved.begin(), kReserved.end(), id)) {
+  } else if (!what.empty() && kReserved.find(fmt::format(" {} ", id)) != kReserved.npos) {
     diagnostics.error_in_code(place, fmt::format("{} cannot be the name of {}", quote(id), what),
                               "it is a word of C++ or of the profile");
   } else if (what == "a spec" &&

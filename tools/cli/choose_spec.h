@@ -1,8 +1,6 @@
 // Chooses a spec by what a capture holds.
 #pragma once
 
-#include <string>
-
 #include "codec/reflect/schema.h"
 #include "tools/cli/input.h"
 

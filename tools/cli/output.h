@@ -1,7 +1,6 @@
 // Standard output and files, through one big buffer or written whole.
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>

@@ -1,7 +1,6 @@
 #include "tools/cli/reading.h"
 
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <vector>
 

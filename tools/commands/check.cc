@@ -4,7 +4,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -14,7 +13,7 @@
 #include "codec/text/text.h"
 #include "conformance/check/input/duplicates.h"
 #include "conformance/check/input/read_trace.h"
-#include "conformance/check/judge/judge.h"
+#include "conformance/check/observation.h"
 #include "conformance/check/report/words.h"
 #include "tools/cli/color.h"
 #include "tools/cli/exit_codes.h"

@@ -6,7 +6,6 @@
 #include <optional>
 #include <set>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "codec/containers/reader.h"
@@ -16,8 +15,8 @@
 #include "codec/lines/stop.h"
 #include "codec/text/text.h"
 #include "conformance/check/judge/follow.h"
-#include "conformance/check/judge/judge.h"
 #include "conformance/check/judge/watch.h"
+#include "conformance/check/observation.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/input_threads.h"
 #include "tools/cli/output.h"

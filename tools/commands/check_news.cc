@@ -4,13 +4,11 @@
 #include <poll.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <chrono>
-#include <cstring>
 
 #include "codec/text/shell.h"
 #include "codec/text/text.h"
-#include "conformance/check/judge/judge.h"
+#include "conformance/check/observation.h"
 #include "conformance/check/report/html.h"
 #include "conformance/check/report/json.h"
 #include "conformance/check/report/junit.h"

@@ -1,7 +1,6 @@
 // Options of `rubric check`, and their use by the judge.
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>

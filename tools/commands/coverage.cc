@@ -7,8 +7,6 @@
 #include <map>
 #include <memory>
 #include <set>
-#include <span>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>

@@ -1,7 +1,6 @@
 #include "tools/commands/decode_threads.h"
 
 #include <algorithm>
-#include <cstring>
 
 namespace rubric::tools {
 namespace {

@@ -1,8 +1,6 @@
 #include <cstdio>
 #include <memory>
-#include <optional>
 #include <string>
-#include <vector>
 
 #include "codec/text/text.h"
 #include "conformance/explore/counterexample.h"

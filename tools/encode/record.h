@@ -1,7 +1,6 @@
 // Reads the lines that `rubric decode --format jsonl` prints back into packets.
 #pragma once
 
-#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>

@@ -1,6 +1,5 @@
 #include "tools/format/message_types.h"
 
-#include <algorithm>
 #include <set>
 
 namespace rubric::format {

@@ -1,9 +1,7 @@
 #include "tools/format/put.h"
 
-#include <bit>
 #include <charconv>
 #include <cmath>
-#include <limits>
 
 #if defined(__x86_64__)
 #include <immintrin.h>

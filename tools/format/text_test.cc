@@ -12,7 +12,6 @@ namespace {
 using testing::EndsWith;
 using testing::HasSubstr;
 using testing::Not;
-using testing::StartsWith;
 
 std::string printed(const Sample& sample, TextOptions options = {}) {
   TextFormatter formatter(rubicon(), std::move(options));

@@ -12,7 +12,7 @@ import tempfile
 import unittest
 import xml.etree.ElementTree
 
-from testing import ROOT, run
+from testing import ROOT, Folder, run
 
 SVG = "{http://www.w3.org/2000/svg}"
 LABEL, SMALL = 7.3, 6.7  # Pixels a character, as the picture counts them.
@@ -127,7 +127,7 @@ class EveryCase(unittest.TestCase):
                     self.assertLessEqual(end, begin + 1, case)
 
 
-class Chart(unittest.TestCase):
+class Chart(Folder):
     """Single cases, and the command line."""
 
     def test_what_is_ignored_says_why(self):
@@ -168,18 +168,14 @@ class Chart(unittest.TestCase):
         path = str(ROOT / "conformance/cases/j4.rtr")
         one = chart(path + ":j4.wrong_seq")
         self.assertEqual(one.stdout, chart("j4.wrong_seq").stdout)
-        every = chart(path)
-        self.assertEqual(every.returncode, 0)
-        self.assertIn(one.stdout, every.stdout)
+        self.shows(("chart", path), one.stdout)
         done = chart(path, "--format", "svg")
         self.assertEqual(done.returncode, 64)
         self.assertRegex(done.stderr, r"has \d+ cases; name the one to draw: \S+:j4\.accept")
-        with tempfile.TemporaryDirectory() as folder:
-            out = pathlib.Path(folder) / "chart.svg"
-            self.assertEqual(chart("j4.accept", "--format", "svg", "--out", str(out)).returncode,
-                             0)
-            xml.etree.ElementTree.parse(out)
-            self.assertEqual(chart("j4.accept", "--out", f"{folder}/none/x").returncode, 74)
+        out = self.folder / "chart.svg"
+        self.assertEqual(chart("j4.accept", "--format", "svg", "--out", out).returncode, 0)
+        xml.etree.ElementTree.parse(out)
+        self.assertEqual(chart("j4.accept", "--out", self.folder / "none/x").returncode, 74)
 
     def test_what_does_not_exist(self):
         for words, code, text in [
@@ -189,17 +185,11 @@ class Chart(unittest.TestCase):
                 (["j4.accept", "--target", "machine:no_fial"], 64, "no_fial"),
                 ([""], 64, "")]:
             with self.subTest(words=words):
-                done = chart(*words)
-                self.assertEqual(done.returncode, code, done.stderr)
-                self.assertIn(text, done.stderr)
+                self.refused(("chart", *words), text, code)
 
     def test_a_broken_file_says_where(self):
-        with tempfile.TemporaryDirectory() as folder:
-            path = pathlib.Path(folder) / "mine.rtr"
-            path.write_text("%rtr 1\ncase x\n@0 m5 < app jion(telosb_demo 0 0)\n")
-            done = chart(str(path))
-            self.assertEqual(done.returncode, 66)
-            self.assertIn("mine.rtr:3:", done.stderr)
+        path = self.write("mine.rtr", "%rtr 1\ncase x\n@0 m5 < app jion(telosb_demo 0 0)\n")
+        self.refused(("chart", path), "mine.rtr:3:", 66)
 
     def test_other_implementations(self):
         done = chart("j4.wrong_seq", "--target", "machine:accepts_wrong_seq")

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """`rubric check` of runs that go on: lines in use, growing files, several at a time.
 
-Usage: check_live_test.py RUBRIC PROJECT_FOLDER. All of it on this host, bounded in time.
+Usage: check_live_test.py RUBRIC. All of it on this host, bounded in time.
 """
 
 import json
@@ -19,8 +19,9 @@ from check_live_testing import (BROKEN_LINE, CLEAN_LINE, MANY, OPEN_LINE, SERIAL
                                 TWO_TAPS, CheckTest, blocks, data, frames_in, is_packet,
                                 of_findings, offline, stamped, standing, until_packet)
 # pylint: disable-next=unused-import
-from live_testing import RUBRIC, Forwarder, Running, load_tests  # noqa: F401
-from serial_testing import PATIENCE_S, Pty, hdlc, holds
+from live_testing import Forwarder, Running, load_tests  # noqa: F401
+from serial_testing import PATIENCE_S, Pty, hdlc, holds, wait_for
+from testing import rubric
 
 
 class CheckLive(CheckTest):
@@ -43,8 +44,8 @@ class CheckLive(CheckTest):
         self.assertNotIn("Verdict", line)
         code, out, err = running.end()
         self.assertEqual((code, err), (1, ""))
-        again = subprocess.run([RUBRIC, "check", kept], capture_output=True, text=True, check=False)
-        self.assertTrue(out.endswith("\n\n" + again.stdout) or out.endswith(again.stdout), out)
+        again = rubric("check", kept)[1]
+        self.assertTrue(out.endswith("\n\n" + again) or out.endswith(again), out)
         self.assertIn(f"Again:    rubric check {kept}", out)
 
     def test_without_a_file_there_is_nothing_to_check_again(self):
@@ -93,7 +94,7 @@ class CheckLive(CheckTest):
                 self.assertEqual(found["severity"], severity)
                 self.assertIn("What hosts send down its serial line", found["text"])
             frames = frames_in(path)
-            self.grown(kept, lambda: frames_in(kept) > frames)
+            wait_for(lambda: frames_in(kept) > frames, kept)
             code, report, err = running.report()
             self.assertEqual(err, "")
             self.assertEqual((code, report), offline(kept))
@@ -111,7 +112,7 @@ class CheckLive(CheckTest):
                 got.extend(line.read(0.2))
                 return kept.exists() and kept.stat().st_size > 150
 
-            self.grown(kept, captured)
+            wait_for(captured, kept)
             got.extend(line.read(0.5))
             self.assertEqual(got[:len(answer)] if answer else got, answer)
             self.assertEqual(running.end()[2], "")
@@ -152,8 +153,7 @@ class CheckLive(CheckTest):
 
     def test_what_is_reported_live_is_in_the_last_report(self):
         for capture in (MANY, SERIAL_TOO):
-            path = self.folder / capture.name
-            path.write_bytes(b"")
+            path = self.write(capture.name, b"")
             wanted = of_findings(offline(capture)[1]["findings"])
             wanted = {(str(path), *rest): severity for (_, *rest), severity in wanted.items()}
             self.assertTrue(wanted)
@@ -185,15 +185,13 @@ class CheckLive(CheckTest):
         for change, said in (("shorten", "it has become shorter"),
                              ("replace", "another file has taken its name"),
                              ("remove", "it was renamed or deleted")):
-            path = self.folder / f"{change}.pcapng"
-            path.write_bytes(whole)
+            path = self.write(f"{change}.pcapng", whole)
             running = self.started(path, "--follow")
-            self.grown(path, lambda it=running.process, p=path: holds(it, p))
+            wait_for(lambda it=running.process, p=path: holds(it, p), path)
             if change == "shorten":
                 path.write_bytes(whole[:100])
             elif change == "replace":
-                other = self.folder / "other.pcapng"
-                other.write_bytes(whole)
+                other = self.write("other.pcapng", whole)
                 other.rename(path)
             else:
                 path.unlink()
@@ -224,7 +222,7 @@ class CheckLive(CheckTest):
                 else:
                     os.write(line.fd, hdlc(block[28:28 + size - 2]))
         frames = len(packets)
-        self.grown(kept, lambda: frames_in(kept) > 0)
+        wait_for(lambda: frames_in(kept) > 0, kept)
         code, report, err = running.report()
         self.assertEqual((code, report), offline(kept, sniffer), err)
         self.assertEqual(report["files"], [str(kept), str(sniffer)])
@@ -246,8 +244,7 @@ class CheckLive(CheckTest):
         server = Forwarder(self)
         running = self.started(f"sf@127.0.0.1:{server.port}", "--reconnect", "--format", "jsonl")
         server.accept(b"U ").close()
-        connection = server.accept(data(BROKEN_LINE))
-        self.addCleanup(connection.close)
+        server.accept(data(BROKEN_LINE))
         self.assertEqual(running.event("found", "J6-CONTENT")["finding"]["frame"], 2)
         code, _, err = running.report()
         self.assertEqual(code, 1)
@@ -284,7 +281,7 @@ class CheckLive(CheckTest):
         path = self.folder / "sniffed"
         os.mkfifo(path)
         running = self.started(path, "--follow", "--format", "jsonl")
-        self.grown(path, lambda: holds(running.process, path))
+        wait_for(lambda: holds(running.process, path), path)
         code, report, err = running.report()
         self.assertEqual((code, report["findings"], err), (3, [], f"rubric: {path}: is empty\n"))
 
@@ -305,10 +302,9 @@ class CheckLive(CheckTest):
         connection.close()
         code, out, err = running.end(None)
         self.assertEqual((code, json.loads(out)["frames"]), (66, 2), err)
-        path = self.folder / "whole.pcapng"
-        path.write_bytes(data(TWO_TAPS))
+        path = self.write("whole.pcapng", data(TWO_TAPS))
         running = Running("stats", path, "--follow", "--format", "json")
-        self.grown(path, lambda: holds(running.process, path))
+        wait_for(lambda: holds(running.process, path), path)
         time.sleep(0.5)
         code, out, err = running.end()
         self.assertEqual((code, json.loads(out)["frames"], err), (0, 11, ""))
@@ -320,14 +316,12 @@ class CheckLive(CheckTest):
         running = self.started("--format", "jsonl", stdin=slave,
                                env={**os.environ, "MOTECOM": f"sf@127.0.0.1:{server.port}"})
         os.close(slave)
-        connection = server.accept(data(BROKEN_LINE))
-        self.addCleanup(connection.close)
+        server.accept(data(BROKEN_LINE))
         running.event("found", "J6-CONTENT")
         self.assertEqual(running.report()[0], 1)
 
     def test_options_that_make_no_sense(self):
-        log = self.folder / "run.rtr"
-        log.write_text("%rtr 1\n")
+        log = self.write("run.rtr", "%rtr 1\n")
         line = "sf@127.0.0.1:1"
         for arguments, said in (
                 (("x.pcapng", "--write", "y.pcapng"), "none of the sources is a line in use"),
@@ -338,20 +332,14 @@ class CheckLive(CheckTest):
                 ((line, "--write", "y", "--out", "y"), "is also an input or another output"),
                 (("serial@/dev/ttyUSB0",), "expected serial@DEVICE:BAUD"),
                 ((), "FILE")):
-            done = subprocess.run([RUBRIC, "check", *map(str, arguments)], capture_output=True,
-                                  text=True, check=False, stdin=subprocess.DEVNULL,
-                                  timeout=PATIENCE_S)
-            self.assertEqual((done.returncode, done.stdout), (64, ""), arguments)
-            self.assertIn(said, done.stderr, arguments)
+            self.refused(("check", *arguments), said)
 
     def test_a_long_run_is_judged_in_little_of_the_time(self):
         """Frames as fast as they go: what is judged again and again must not add up."""
         path = self.folder / "long.pcapng"
-        subprocess.run([RUBRIC, "simulate", "--motes", "20", "--sinks", "2", "--seconds", "700",
-                        "--out-pcapng", path], check=True, capture_output=True)
+        rubric("simulate", "--motes", 20, "--sinks", 2, "--seconds", 700, "--out-pcapng", path)
         whole = path.read_bytes()
-        growing = self.folder / "growing.pcapng"
-        growing.write_bytes(b"")
+        growing = self.write("growing.pcapng", b"")
         begin = time.monotonic()
         running = self.started(growing, "--follow", "--format", "jsonl", "--start", "cold")
         with open(growing, "ab", buffering=0) as file:

@@ -3,15 +3,14 @@
 import json
 import os
 import pathlib
-import select
 import signal
 import struct
-import subprocess
 import time
 
 import live_testing
-from live_testing import ROOT, RUBRIC, Forwarder
-from serial_testing import PATIENCE_S, hdlc
+from live_testing import Forwarder
+from serial_testing import PATIENCE_S, hdlc, read_until
+from testing import ROOT, rubric
 
 CAPTURES = pathlib.Path("spec/captures")
 BROKEN_LINE = CAPTURES / "basestation/s06_control_03.from_sink.sfstream"  # J6-CONTENT fails.
@@ -78,17 +77,11 @@ class Checked(live_testing.Running):
 
     def text(self, wanted, stream=None):
         """Returns the output up to that text."""
-        stream = stream or self.process.stdout
-        got = b""
-        deadline = time.monotonic() + PATIENCE_S
-        while wanted.encode() not in got:
-            left = max(0, deadline - time.monotonic())
-            ready = select.select([stream], [], [], left)[0]
-            more = os.read(stream.fileno(), 1 << 16) if ready else b""
-            if not more:
-                self.process.kill()
-                raise AssertionError(f"no {wanted!r} in {got}: {self.end(None)}")
-            got += more
+        got, came = read_until((stream or self.process.stdout).fileno(),
+                               lambda got: wanted.encode() in got)
+        if not came:
+            self.process.kill()
+            raise AssertionError(f"no {wanted!r} in {got}: {self.end(None)}")
         return got.decode()
 
     def report(self, signal_number=signal.SIGINT):
@@ -105,9 +98,8 @@ class Checked(live_testing.Running):
 
 
 def offline(*arguments):
-    done = subprocess.run([RUBRIC, "check", *map(str, arguments), "--format", "json"], cwd=ROOT,
-                          capture_output=True, text=True, check=False, timeout=PATIENCE_S)
-    return done.returncode, json.loads(done.stdout) if done.stdout else done.stderr
+    code, out, err = rubric("check", *arguments, "--format", "json", cwd=ROOT)
+    return code, json.loads(out) if out else err
 
 
 def frames_in(path):
@@ -144,7 +136,6 @@ class CheckTest(live_testing.LiveTest):
         server = Forwarder(self)
         running = self.started(f"sf@127.0.0.1:{server.port}", *arguments)
         connection = server.accept(content)
-        self.addCleanup(connection.close)
         return running, connection
 
     def opened(self, running, line):
@@ -156,9 +147,3 @@ class CheckTest(live_testing.LiveTest):
             if line.read(0.2):
                 break
             self.assertLess(time.monotonic(), deadline, running.process.poll())
-
-    def grown(self, path, done):
-        deadline = time.monotonic() + PATIENCE_S
-        while not done():
-            self.assertLess(time.monotonic(), deadline, path)
-            time.sleep(0.1)

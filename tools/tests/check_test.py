@@ -13,7 +13,7 @@ import sys
 import unittest
 import xml.etree.ElementTree
 
-from testing import FIRMWARE, Folder as AnyFolder, on_terminal, rubric
+from testing import FIRMWARE, Folder, on_terminal, rubric
 
 REGENERATE = "--regenerate" in sys.argv and (sys.argv.remove("--regenerate") or True)
 BASESTATION = pathlib.Path("spec/captures/basestation")
@@ -49,13 +49,6 @@ def failures(report):
 def capture_files():
     return sorted(FIRMWARE.glob("*.pcapng")) + sorted(FIRMWARE.glob("*.serial.bin")) + \
         sorted(BASESTATION.glob("*.sfstream"))
-
-
-class Folder(AnyFolder):
-    def write(self, name, text):
-        path = self.folder / name
-        path.write_bytes(text if isinstance(text, bytes) else text.encode())
-        return path
 
 
 class Text(Folder):
@@ -98,9 +91,7 @@ class Text(Folder):
         lines = log.read_text().splitlines(keepends=True)
         silent = self.write("silent reply.rtr", "".join(
             line for line in lines if "join_reply(" not in line or "mote_addr=4" not in line))
-        code, out, _ = check(*complete, silent)
-        self.assertEqual(code, 1)
-        self.assertIn("FAIL J4-JOINED, mote 4, ", out)
+        out = self.shows(("check", *complete, silent), "FAIL J4-JOINED, mote 4, ", code=1)
         self.assertGreater(self.run_again(out), 0)
 
     def run_again(self, out):
@@ -216,14 +207,11 @@ class Formats(Folder):
         self.assertEqual(copy.read_bytes(), WRONG_SEQ.read_bytes())
 
     def test_out_that_is_full(self):
-        code, _, err = check("--out", "/dev/full", WRONG_SEQ)
-        self.assertEqual(code, 74)
-        self.assertIn("cannot write /dev/full", err)
+        self.refused(("check", "--out", "/dev/full", WRONG_SEQ), "cannot write /dev/full", 74)
 
 
     def test_a_folder_of_reports(self):
-        capture = self.folder / "<b>&.pcapng"
-        capture.write_bytes(WRONG_SEQ.read_bytes())
+        capture = self.write("<b>&.pcapng", WRONG_SEQ.read_bytes())
         folder = self.folder / "report"
         code, out, _ = check(capture, "--report", folder)
         self.assertEqual((code, out), check(capture)[:2])
@@ -297,9 +285,8 @@ class Expectations(Folder):
             code, out, err = self.against(text, WRONG_SEQ)
             self.assertEqual((code, out), (64, ""), text)
             self.assertIn(says, err)
-        code, _, err = check("--expect", self.folder / "none.yaml", WRONG_SEQ)
-        self.assertEqual(code, 66)
-        self.assertIn("none.yaml: No such file", err)
+        self.refused(("check", "--expect", self.folder / "none.yaml", WRONG_SEQ),
+                     "none.yaml: No such file", 66)
 
 
 class Inputs(Folder):
@@ -397,9 +384,7 @@ class Inputs(Folder):
             ([CLEAN, "--frames", "1..5", "--frames", "7..8"], "one range for each file"),
             ([CLEAN, "--snifer", "complete"], "did you mean '--sniffer'?"),
         ]:
-            code, out, err = check(*args)
-            self.assertEqual((code, out), (64, ""), args)
-            self.assertIn(says, err)
+            self.refused(("check", *args), says)
 
     def test_help(self):
         code, out, _ = check("--help")
@@ -408,9 +393,8 @@ class Inputs(Folder):
             self.assertIn(words, out)
 
     def test_stdin(self):
-        code, out, _ = check("-", stdin=WRONG_SEQ.read_bytes())
-        self.assertEqual(code, 1)
-        self.assertIn("FAIL J4-SEQ, mote 2, frame 3", out)
+        self.shows(("check", "-"), "FAIL J4-SEQ, mote 2, frame 3", code=1,
+                   stdin=WRONG_SEQ.read_bytes())
         self.assertEqual(check("-")[::2], (3, "rubric: stdin: is empty\n"))
 
     def test_frames(self):

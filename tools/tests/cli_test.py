@@ -14,7 +14,7 @@ import subprocess
 import tempfile
 import unittest
 
-from testing import FIRMWARE, RUBRIC, on_terminal, run
+from testing import FIRMWARE, RUBRIC, ProgramTest, on_terminal, run
 
 JOIN = FIRMWARE / "a_join_data.pcapng"
 SERIAL = FIRMWARE / "a_join_data.serial.bin"
@@ -32,7 +32,7 @@ def lines(done):
     return done.stdout.decode("utf-8").splitlines()
 
 
-class ExitCodes(unittest.TestCase):
+class ExitCodes(ProgramTest):
     def test_clean_is_0(self):
         self.assertEqual(decode(JOIN).returncode, CLEAN)
         self.assertEqual(decode(stdin=b"").returncode, CLEAN)
@@ -74,10 +74,7 @@ class ExitCodes(unittest.TestCase):
         }
         for words, wanted in cases.items():
             with self.subTest(words):
-                done = run(*words)
-                self.assertEqual(done.returncode, USAGE)
-                self.assertIn(wanted, done.stderr.decode())
-                self.assertEqual(done.stdout, b"")
+                self.refused(words, wanted)
 
     def test_filter_mistakes_have_a_caret(self):
         done = decode("--filter", "index>0 && src.devd==4")

@@ -12,7 +12,7 @@ import struct
 import subprocess
 import unittest
 
-from testing import RUBRIC, Folder, run
+from testing import RUBRIC, Folder, ProgramTest, run
 
 CAPTURES = pathlib.Path("spec/captures")
 SERIAL = CAPTURES / "firmware/a_join_data.serial.bin"
@@ -111,9 +111,7 @@ class Fcs(Folder):
         expected = rubric("decode", stdin=packet.encode())
         self.assertEqual(expected[0], 0)
         self.assertEqual(rubric("decode", stdin=b"\xef\xbb\xbf" + packet.encode()), expected)
-        code, _, err = rubric("decode", stdin=packet.encode("utf-16"))
-        self.assertEqual(code, 66)
-        self.assertIn("this is UTF-16 text", err)
+        self.refused(("decode",), "this is UTF-16 text", 66, stdin=packet.encode("utf-16"))
         line = b'\xef\xbb\xbf{"type":10,"value":12}\r\n'
         self.assertEqual(rubric("encode", "--as", "config", stdin=line),
                          (0, b"00 FF FF 00 00 03 00 25 0A 00 0C\n", ""))
@@ -161,9 +159,7 @@ class Encode(Folder):
         self.assertEqual((code, out), (66, b""))
         self.assertIn('stdin:1: fields.seq_num: given 9, but "raw" says 0; delete "raw"', err)
         del line["raw"]
-        code, out, err = rubric("encode", stdin=json.dumps(line))
-        self.assertEqual(code, 66)
-        self.assertIn('delete "crc" to have it computed', err)
+        self.refused(("encode",), 'delete "crc" to have it computed', 66, stdin=json.dumps(line))
         del line["frame"]["crc"]
         code, out, err = rubric("encode", "--format", "hdlc", stdin=json.dumps(line))
         self.assertEqual((code, err), (0, ""))
@@ -171,7 +167,7 @@ class Encode(Folder):
         self.assertEqual((code, json.loads(out)["fields"]["seq_num"]), (0, 9))
 
     def test_what_a_container_cannot_hold(self):
-        code, out, err = rubric("encode", "--format", "hex", stdin=self.decoded(BAD_CRC))
+        code, _, err = rubric("encode", "--format", "hex", stdin=self.decoded(BAD_CRC))
         self.assertEqual(code, 66)
         self.assertIn("hex holds no malformed frames: ", err)
         # Cut when it was captured: on a serial line its last bytes would read as a CRC.
@@ -190,13 +186,10 @@ class Encode(Folder):
             (["--dest", "1"], "go with --as MESSAGE"),
             (["--spec", "rubicn"], "did you mean 'rubicon'?"),
         ]:
-            code, out, err = rubric("encode", *args)
-            self.assertEqual((code, out), (64, b""), args)
-            self.assertIn(says, err)
+            self.refused(("encode", *args), says)
 
     def test_never_overwrites_what_it_reads(self):
-        file = self.folder / "x.jsonl"
-        file.write_text(CONFIG)
+        file = self.write("x.jsonl", CONFIG)
         for args in [[file], ["-"], []]:
             with open(file, "rb") as stdin:
                 done = subprocess.run([RUBRIC, "encode", "--as", "config", *args, "-o", file],
@@ -266,19 +259,14 @@ class Convert(Folder):
     def test_usage(self):
         self.assertEqual(rubric("convert", SERIAL, "--format", "xml")[0], 64)
         self.assertEqual(rubric("convert", SERIAL, self.folder / "x.xyz")[0], 64)
-        copy = self.folder / "x.bin"
-        copy.write_bytes(SERIAL.read_bytes())
-        code, _, err = rubric("convert", copy, copy)
-        self.assertEqual(code, 64)
-        self.assertIn("is also an input", err)
+        copy = self.write("x.bin", SERIAL.read_bytes())
+        self.refused(("convert", copy, copy), "is also an input")
         self.assertEqual(copy.read_bytes(), SERIAL.read_bytes())
         with open(copy, "rb") as stdin:
             done = subprocess.run([RUBRIC, "convert", "-o", copy], stdin=stdin, capture_output=True)
         self.assertEqual(done.returncode, 64)
         self.assertEqual(copy.read_bytes(), SERIAL.read_bytes())
-        code, out, err = rubric("convert", SERIAL, "-o", "", "--format", "sf")
-        self.assertEqual((code, out), (64, b""))
-        self.assertIn("--output: is empty", err)
+        self.refused(("convert", SERIAL, "-o", "", "--format", "sf"), "--output: is empty")
 
     def test_an_unreadable_input_leaves_the_target_alone(self):
         old, new = self.folder / "old.sf", self.folder / "new.sf"
@@ -289,8 +277,7 @@ class Convert(Folder):
         self.assertFalse(new.exists())
 
     def test_a_shorter_capture_replaces_a_longer_one(self):
-        target = self.folder / "x.bin"
-        target.write_bytes(3 * SERIAL.read_bytes())
+        target = self.write("x.bin", 3 * SERIAL.read_bytes())
         self.assertEqual(rubric("convert", SERIAL, target)[0], 0)
         self.assertEqual(target.read_bytes(), SERIAL.read_bytes())
 
@@ -320,7 +307,7 @@ class Stats(unittest.TestCase):
         self.assertEqual(rubric("stats", "/nonexistent")[0], 66)
 
 
-class Explain(unittest.TestCase):
+class Explain(ProgramTest):
     def test_names(self):
         for name, says in [
             ("net_msg", "WIRE-NET-NBYTES"),
@@ -334,9 +321,7 @@ class Explain(unittest.TestCase):
             code, out, err = rubric("explain", name)
             self.assertEqual((code, err), (0, ""), name)
             self.assertIn(says, out.decode())
-        code, out, _ = rubric("explain", "--spec", "oscilloscope", "oscilloscope_msg")
-        self.assertEqual(code, 0)
-        self.assertIn("AM 147 on serial", out.decode())
+        self.shows(("explain", "--spec", "oscilloscope", "oscilloscope_msg"), "AM 147 on serial")
 
     def test_a_group_of_rules(self):
         code, out, err = rubric("explain", "j4")
@@ -446,15 +431,9 @@ class Explain(unittest.TestCase):
                 self.assertEqual(bytes.fromhex(back.decode()), bytes.fromhex(hexadecimal))
 
     def test_frames(self):
-        code, out, _ = rubric("explain", *CONFIG_PACKET.decode().split())
-        self.assertEqual(code, 0)
-        self.assertIn("set_island_id", out.decode())
-        code, out, _ = rubric("explain", "--as", "config", "0a000c")
-        self.assertEqual(code, 0)
-        self.assertIn("the message config alone", out.decode())
-        code, out, _ = rubric("explain", "--as", "config", "0a00")
-        self.assertEqual(code, 1)
-        self.assertIn("WIRE-CONFIG (MUST)", out.decode())
+        self.shows(("explain", *CONFIG_PACKET.decode().split()), "set_island_id")
+        self.shows(("explain", "--as", "config", "0a000c"), "the message config alone")
+        self.shows(("explain", "--as", "config", "0a00"), "WIRE-CONFIG (MUST)", code=1)
 
     def test_unknown(self):
         for args, says in [(["net_mesg"], "did you mean 'net_msg'?"),
@@ -466,17 +445,14 @@ class Explain(unittest.TestCase):
                            (["99887766"], "begin like no frame"),
                            (["--framing", "sf", "xyz"], "expected hex digits"),
                            (["net_msg", "upates"], "did you mean 'updates'?")]:
-            code, out, err = rubric("explain", *args)
-            self.assertEqual((code, out), (64, b""), args)
-            self.assertIn(says, err)
+            self.refused(("explain", *args), says)
 
 
-class Simulate(unittest.TestCase):
+class Simulate(ProgramTest):
     def test_a_seed_has_no_sign(self):
         for seed in ("-1", "0x7", "1.5"):
-            code, _, err = rubric("simulate", "--seconds", "1", "--seed", seed)
-            self.assertEqual(code, 64, seed)
-            self.assertIn(f"--seed: expected a number of 0 or more, given '{seed}'", err)
+            self.refused(("simulate", "--seconds", "1", "--seed", seed),
+                         f"--seed: expected a number of 0 or more, given '{seed}'")
         self.assertEqual(rubric("simulate", "--seconds", "1", "--seed", str(2**64 - 1))[0], 0)
 
     def test_output_that_cannot_be_written(self):
@@ -486,7 +462,7 @@ class Simulate(unittest.TestCase):
             self.assertIn(f"rubric: cannot write {target}: {why}", err)
 
 
-class Messages(unittest.TestCase):
+class Messages(ProgramTest):
     def test_text_and_json(self):
         code, out, _ = rubric("messages")
         self.assertEqual(code, 0)
@@ -500,9 +476,7 @@ class Messages(unittest.TestCase):
                          ([28], 14, 114))
         self.assertLessEqual(max(map(len, text.splitlines())), 110)
         self.assertRegex(text, r"(?m)^35  updates .* app_msg ")
-        code, out, _ = rubric("messages", "--spec", "oscilloscope")
-        self.assertEqual(code, 0)
-        self.assertIn("oscilloscope_msg", out.decode())
+        self.shows(("messages", "--spec", "oscilloscope"), "oscilloscope_msg")
         self.assertEqual(rubric("messages", "--spec", "nothing")[0], 64)
 
 

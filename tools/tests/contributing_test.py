@@ -17,7 +17,7 @@ sys.path.insert(0, str(ROOT / "tools/book"))
 
 import snippets  # pylint: disable=wrong-import-position
 
-VERB = re.compile(r"^\s*(rubric_(?:library|program|(?:script_)?test|benchmark|fuzzer)"
+VERB = re.compile(r"^\s*(rubric_(?:library|program|(?:(?:command|script)_)?test|benchmark|fuzzer)"
                   r"|add_custom_target)\((\w+)", re.M)
 LABELS = {"fast", "slow", "long", "foreign"}  # rubric_label_test() sets them.
 

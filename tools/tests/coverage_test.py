@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Every rule has its case, and `rubric coverage` would say so if one had not.
 
-Usage: coverage_test.py RUBRIC PROJECT_FOLDER
+Usage: coverage_test.py RUBRIC
 """
 
 import json
@@ -93,9 +93,7 @@ class Coverage(Folder):
         self.assertEqual(done.returncode, 1)
         self.assertIn("problem: NEW-RULE is a MUST without a case", done.stdout)
         rules.unlink()
-        done = run("coverage", "--protocol", probes, text=True)
-        self.assertEqual(done.returncode, 66)
-        self.assertIn("requirements.yaml", done.stderr)
+        self.refused(("coverage", "--protocol", probes), "requirements.yaml", 66)
 
     def test_no_cases_are_an_error(self):
         done = coverage(self.folder)

@@ -1,19 +1,19 @@
 #!/usr/bin/env python3
 """`rubric decode` on lines in use: pseudo terminals, a serial forwarder's port, a growing file.
 
-Usage: decode_live_test.py RUBRIC PROJECT_FOLDER. All of it on this host, bounded in time.
+Usage: decode_live_test.py RUBRIC. All of it on this host, bounded in time.
 """
 
 import os
 import pty
 import signal
 import socket
-import subprocess
 import time
 import unittest
 
-from live_testing import ROOT, RUBRIC, Forwarder, LiveTest, lines_of
+from live_testing import Forwarder, LiveTest, lines_of
 from serial_testing import PATIENCE_S, Pty, hdlc
+from testing import ROOT
 
 SERIAL = "spec/captures/firmware/a_join_data.serial.bin"
 FORWARDER = "spec/captures/basestation/s04_acks.from_sink.sfstream"
@@ -147,8 +147,7 @@ class Live(LiveTest):
         running = self.started("decode", "--format", "jsonl", "--count", "1", stdin=slave,
                                env={**os.environ, "MOTECOM": f"sf@127.0.0.1:{server.port}"})
         os.close(slave)
-        connection = server.accept((ROOT / FORWARDER).read_bytes())
-        self.addCleanup(connection.close)
+        server.accept((ROOT / FORWARDER).read_bytes())
         self.assertEqual(len(running.lines(1)), 1)
         self.assertEqual(running.end(None)[0], 0)
 
@@ -156,17 +155,11 @@ class Live(LiveTest):
         for name, what in (("serial@/dev/ttyUSB0", "expected serial@DEVICE:BAUD"),
                            ("serial@/dev/null:fast", "expected serial@DEVICE:BAUD"),
                            ("sf@nowhere", "expected HOST:PORT")):
-            done = subprocess.run([RUBRIC, "decode", name], capture_output=True, text=True,
-                                  check=False)
-            self.assertEqual((done.returncode, done.stdout), (64, ""), name)
-            self.assertIn(what, done.stderr)
+            self.refused(("decode", name), what)
         for name, what in (("serial@/dev/null:115200", "is not a serial line"),
                            ("serial@/no/such:57600", "cannot be opened"),
                            ("sf@127.0.0.1:1", "cannot connect")):
-            done = subprocess.run([RUBRIC, "decode", name], capture_output=True, text=True,
-                                  check=False)
-            self.assertEqual(done.returncode, 66, name)
-            self.assertIn(what, done.stderr)
+            self.refused(("decode", name), what, 66)
 
 
 if __name__ == "__main__":

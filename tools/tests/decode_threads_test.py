@@ -4,16 +4,14 @@
 Usage: decode_threads_test.py RUBRIC
 """
 import hashlib
-import os
 import pathlib
 import random
 import shutil
-import subprocess
 import tempfile
 import unittest
 
 import testing
-from testing import FIRMWARE, RUBRIC
+from testing import FIRMWARE
 
 LONG_BYTES = 64 << 20  # From here on all cores decode by themselves.
 PATIENCE_S = 300
@@ -73,11 +71,7 @@ class Threads(unittest.TestCase):
 
     def test_nobody_reads(self):
         for jobs in (1, 3):
-            read, write = os.pipe()
-            os.close(read)
-            done = subprocess.run([RUBRIC, "decode", self.line, "--jobs", str(jobs)], stdout=write,
-                                  stderr=subprocess.PIPE, check=False, timeout=PATIENCE_S)
-            os.close(write)
+            done = testing.run_unread("decode", self.line, "--jobs", jobs)
             self.assertEqual((done.returncode, done.stderr), (OUTPUT, b""))
 
 

@@ -6,7 +6,7 @@ import pathlib
 import tempfile
 import unittest
 
-from testing import ROOT, rubric
+from testing import ROOT, ProgramTest, rubric
 
 LISTS = ROOT / "tools/expect"
 CAPTURES = ROOT / "spec/captures"
@@ -25,7 +25,7 @@ def machine(name):
     return ["test", "--target", f"machine:release_1_0_{name}", "--format", "json", "--expect"]
 
 
-class Check(unittest.TestCase):
+class Check(ProgramTest):
     def matched(self, name, runs):
         """Each run is as expected; returns the lines of entries that came true."""
         out = set()
@@ -62,7 +62,7 @@ class Check(unittest.TestCase):
         self.holds("base_station", [[file] for file in streams])
 
 
-class Test(unittest.TestCase):
+class Test(ProgramTest):
     def test_as_measured(self):
         for name, broken in BROKEN.items():
             code, out, err = rubric(*machine(name), LISTS / f"{name}.test.yaml")
@@ -87,12 +87,10 @@ class Test(unittest.TestCase):
     def test_a_list_of_the_wrong_kind_says_so(self):
         capture = CAPTURES / "firmware/a_join_data.pcapng"
         for name in BROKEN:
-            code, _, err = rubric("check", capture, "--expect", LISTS / f"{name}.test.yaml")
-            self.assertEqual(code, 64)
-            self.assertIn("belongs to a list for rubric test; this one is for rubric check", err)
-            code, _, err = rubric(*machine(name), LISTS / f"{name}.check.yaml")
-            self.assertEqual(code, 64)
-            self.assertIn("belongs to a list for rubric check; this one is for rubric test", err)
+            self.refused(("check", capture, "--expect", LISTS / f"{name}.test.yaml"),
+                         "belongs to a list for rubric test; this one is for rubric check")
+            self.refused((*machine(name), LISTS / f"{name}.check.yaml"),
+                         "belongs to a list for rubric check; this one is for rubric test")
 
 
 if __name__ == "__main__":

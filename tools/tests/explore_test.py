@@ -13,21 +13,19 @@ import re
 import resource
 import subprocess
 import sys
-import tempfile
 import unittest
 
-import testing
-from testing import RUBRIC
+from testing import RUBRIC, Folder, ProgramTest, run
 
 DIAGRAMS = pathlib.Path(__file__).resolve().parent / "expect/transitions.txt"
 FAULTS = ["--loss", "--dup"]
 
 
 def explore(*words):
-    return testing.run("explore", *words, text=True)
+    return run("explore", *words, text=True)
 
 
-class Explore(unittest.TestCase):
+class Explore(Folder):
     def test_says_what_it_found(self):
         done = explore("--motes", "1", "--sinks", "2", *FAULTS)
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -81,13 +79,11 @@ class Explore(unittest.TestCase):
         self.assertIn("verdict      broken", done.stderr)
 
     def test_a_trace_goes_to_its_file(self):
-        with tempfile.TemporaryDirectory() as folder:
-            path = pathlib.Path(folder) / "broken.rtr"
-            done = explore(*FAULTS, "--flaw", "no_fail", "--out", str(path))
-            self.assertEqual(done.returncode, 1)
-            self.assertIn("verdict      broken", done.stdout)
-            self.assertIn("case explore.one_terminal", path.read_text())
-        done = explore(*FAULTS, "--flaw", "no_fail", "--out", f"{folder}/none/x")
+        path = self.folder / "broken.rtr"
+        self.shows(("explore", *FAULTS, "--flaw", "no_fail", "--out", path), "verdict      broken",
+                   code=1)
+        self.assertIn("case explore.one_terminal", path.read_text())
+        done = explore(*FAULTS, "--flaw", "no_fail", "--out", self.folder / "none/x")
         self.assertEqual(done.returncode, 74)
         self.assertIn("cannot write", done.stderr)
 
@@ -107,14 +103,12 @@ class Explore(unittest.TestCase):
         self.assertEqual(process.wait(), 74)
 
     def test_the_known_weakness_is_reported_and_breaks_nothing(self):
-        with tempfile.TemporaryDirectory() as folder:
-            path = pathlib.Path(folder) / "known.rtr"
-            done = explore(*FAULTS, "--reboot", "--calls", "2", "--out-known", str(path))
-            self.assertEqual(done.returncode, 0, done.stderr)
-            self.assertIn("spec/membership.md", done.stdout)
-            text = path.read_text()
-            self.assertIn("reboot", text)
-            self.assertIn("case explore.known_weakness", text)
+        path = self.folder / "known.rtr"
+        self.shows(("explore", *FAULTS, "--reboot", "--calls", "2", "--out-known", path),
+                   "spec/membership.md")
+        text = path.read_text()
+        self.assertIn("reboot", text)
+        self.assertIn("case explore.known_weakness", text)
 
     def test_what_was_never_reached_fails(self):
         # A mote that misreads every ack breaks nothing of this; but no message ends in success.
@@ -126,10 +120,9 @@ class Explore(unittest.TestCase):
 
     def test_a_flaw_that_never_acts_decides_nothing(self):
         # One call has no old replies that the mote could mistake for its own.
-        done = explore(*FAULTS, "--flaw", "accepts_wrong_seq")
-        self.assertEqual(done.returncode, 3, done.stdout)
-        self.assertIn("verdict      inconclusive: flaw accepts_wrong_seq never acted", done.stdout)
-        self.assertIn("--calls 2", done.stdout)
+        self.shows(("explore", *FAULTS, "--flaw", "accepts_wrong_seq"),
+                   "verdict      inconclusive: flaw accepts_wrong_seq never acted", "--calls 2",
+                   code=3)
         found = json.loads(explore(*FAULTS, "--flaw", "accepts_wrong_seq", "--format",
                                    "json").stdout)
         self.assertEqual(found["verdict"], "inconclusive")
@@ -177,12 +170,10 @@ class Explore(unittest.TestCase):
                             (["--motes", "4", "--sinks", "4"], "at most 6"),
                             (["--lss"], "did you mean '--loss'")]:
             with self.subTest(words=words):
-                done = explore(*words)
-                self.assertEqual(done.returncode, 64, done.stderr)
-                self.assertIn(text, done.stderr)
+                self.refused(("explore", *words), text)
 
 
-class Transitions(unittest.TestCase):
+class Transitions(ProgramTest):
     def test_are_those_that_were_read(self):
         done = explore("--transitions")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
@@ -222,9 +213,7 @@ class Transitions(unittest.TestCase):
         for words, text in [(["--transitions", "--part", "jion"], "did you mean 'join'"),
                             (["--part", "join"], "--transitions"),
                             (["--transitions", "--motes", "2"], "--transitions")]:
-            done = explore(*words)
-            self.assertEqual(done.returncode, 64, done.stderr)
-            self.assertIn(text, done.stderr)
+            self.refused(("explore", *words), text)
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """rubric-extcap as Wireshark calls it, by hand.
 
-Usage: extcap_test.py RUBRIC RUBRIC_EXTCAP PROJECT_FOLDER.
+Usage: extcap_test.py RUBRIC RUBRIC_EXTCAP.
 """
 
 import os
@@ -9,13 +9,13 @@ import pathlib
 import re
 import select
 import signal
-import sys
 import time
 import unittest
 
-from extcap_testing import (FORWARDER, PACKET, SERIAL, Base, Given, Server, decoded, meaning,
-                            run)
+from extcap_testing import EXTCAP, FORWARDER, PACKET, SERIAL, Base, decoded, meaning, run
+from live_testing import Forwarder
 from serial_testing import PATIENCE_S, Pty, hdlc, wait_for
+from testing import RUBRIC
 
 UNKNOWN = ["--extcap-version=9.9", "--not-yet-known", "--also-new", "value", "--log-level=debug"]
 # As Wireshark takes them apart.
@@ -36,7 +36,7 @@ class Calls(Base):
     """Each call of the protocol, by hand."""
 
     def said(self, *words, code=0):
-        done = run(Given.extcap, *words, env=self.environment)
+        done = run(EXTCAP, *words, env=self.environment)
         self.assertEqual((done.returncode, done.stderr if code == 0 else ""), (code, ""), done)
         return done.stdout
 
@@ -107,14 +107,14 @@ class Calls(Base):
                             (["--extcap-dlts", "--extcap-interface", "eth0"], "'eth0'"),
                             (["--capture", "--extcap-interface", "rubric"], "needs --fifo"),
                             (["--capture", "--fifo"], "--fifo needs a value")):
-            done = run(Given.extcap, *words, env=self.environment)
+            done = run(EXTCAP, *words, env=self.environment)
             self.assertEqual((done.returncode, done.stdout), (64, ""), words)
             self.assertIn(what, done.stderr)
 
     def test_help_and_version(self):
         for option in ("--extcap-interfaces", "--source", "--reconnect", "--other-source"):
             self.assertIn(option, self.said("--help"))
-        self.assertEqual(self.said("--version"), run(Given.rubric, "--version").stdout)
+        self.assertEqual(self.said("--version"), run(RUBRIC, "--version").stdout)
 
 
 class Captures(Base):
@@ -127,12 +127,11 @@ class Captures(Base):
         self.got = b""
 
     def capture(self, source, *more, fifo=None):
-        return self.started(Given.extcap, "--capture", "--extcap-interface", "rubric", "--fifo",
+        return self.started(EXTCAP, "--capture", "--extcap-interface", "rubric", "--fifo",
                             fifo or self.fifo, "--source", source, *more)
 
     def reader(self):
-        fd = os.open(self.fifo, os.O_RDONLY)
-        return fd
+        return os.open(self.fifo, os.O_RDONLY)
 
     def read(self, fd, enough):
         """Until `enough` holds of what was read, or the writer closed the pipe."""
@@ -151,12 +150,12 @@ class Captures(Base):
         return decoded(path)
 
     def test_a_serial_forwarder_until_sigterm(self):
-        server = Server(self)
+        server = Forwarder(self)
         process = self.capture(f"sf@127.0.0.1:{server.port}", *UNKNOWN)
         fd = self.reader()
         self.addCleanup(os.close, fd)
-        connection = server.forward(self, (Given.root / FORWARDER).read_bytes())
-        wanted = decoded(Given.root / FORWARDER)
+        connection = server.accept(FORWARDER.read_bytes())
+        wanted = decoded(FORWARDER)
         self.read(fd, lambda _: len(self.records()) == len(wanted))
         self.assertEqual(meaning(self.records()), meaning(wanted))
         self.assertEqual({one["link_type"] for one in self.interfaces()}, {148})
@@ -183,7 +182,7 @@ class Captures(Base):
         line = Pty(self)
         place = self.folder / "my mote"
         place.symlink_to(line.name)
-        server = Server(self)
+        server = Forwarder(self)
         frame = hdlc(b"\x44\x2a" + PACKET)
         for source in (f"serial@{place}:telosb", f"network@127.0.0.1:{server.port}"):
             with self.subTest(source):
@@ -192,7 +191,7 @@ class Captures(Base):
                                        *(["--listen-only"] if "network" in source else []))
                 fd = self.reader()
                 if "network" in source:
-                    connection = server.accept(self)
+                    connection = server.line()
                     connection.sendall(frame)
                 else:
                     self.write_until_read(line, frame, fd)
@@ -222,14 +221,14 @@ class Captures(Base):
                 self.got += os.read(fd, 1 << 16)
 
     def test_a_capture_filter(self):
-        server = Server(self)
+        server = Forwarder(self)
         self.capture(f"network@127.0.0.1:{server.port}", "--extcap-capture-filter",
                      "message==serial_joined || error")
         fd = self.reader()
         self.addCleanup(os.close, fd)
-        connection = server.accept(self)
-        connection.sendall((Given.root / SERIAL).read_bytes() + hdlc(b"\x45" + PACKET, wrong=1))
-        wanted = [one for one in decoded(Given.root / SERIAL) if one["message"] == "serial_joined"]
+        connection = server.line()
+        connection.sendall(SERIAL.read_bytes() + hdlc(b"\x45" + PACKET, wrong=1))
+        wanted = [one for one in decoded(SERIAL) if one["message"] == "serial_joined"]
         self.assertGreater(len(wanted), 1)
         self.read(fd, lambda _: len(self.records()) == len(wanted) + 1)
         self.assertEqual(meaning(self.records()[:-1]), meaning(wanted))
@@ -237,12 +236,12 @@ class Captures(Base):
 
     def test_a_reader_that_goes_ends_it(self):
         """Even when nothing comes that could be written."""
-        server = Server(self)
+        server = Forwarder(self)
         for more in ([], ["--reconnect"]):
             with self.subTest(more):
                 process = self.capture(f"sf@127.0.0.1:{server.port}", *more)
                 fd = self.reader()
-                connection = server.forward(self, b"")
+                connection = server.accept(b"")
                 if more:  # Lost, and waiting for its return.
                     server.listener.close()
                     connection.close()
@@ -271,7 +270,7 @@ class Captures(Base):
                 ("sf@127.0.0.1:1", 66, "cannot connect"),
                 ("serial@/dev/ttyUSB0", 64, "expected serial@DEVICE:BAUD"),
                 ("sf@nowhere", 64, "expected HOST:PORT"),
-                (Given.root / SERIAL, 64, "expected serial@DEVICE:BAUD, network@HOST:PORT or sf@")):
+                (SERIAL, 64, "expected serial@DEVICE:BAUD, network@HOST:PORT or sf@")):
             process = self.capture(source)
             fd = self.reader()  # It is opened before anything fails: Wireshark waits for that.
             self.got = b""
@@ -289,16 +288,16 @@ class Captures(Base):
         self.assertIn("capture filter: ", err)
 
     def test_a_peer_that_goes(self):
-        server = Server(self)
+        server = Forwarder(self)
         process = self.capture(f"sf@127.0.0.1:{server.port}")
         fd = self.reader()
         self.addCleanup(os.close, fd)
-        server.forward(self, (Given.root / FORWARDER).read_bytes()).close()
+        server.accept(FORWARDER.read_bytes()).close()
         self.read(fd, lambda _: False)
         code, err = self.ended(process)
         self.assertEqual(code, 66)
         self.assertIn("the other end closed it", err)
-        self.assertEqual(meaning(self.records()), meaning(decoded(Given.root / FORWARDER)))
+        self.assertEqual(meaning(self.records()), meaning(decoded(FORWARDER)))
 
     def test_pipes_that_cannot_be(self):
         process = self.capture("sf@127.0.0.1:1", fifo=self.folder / "no" / "fifo")
@@ -309,5 +308,4 @@ class Captures(Base):
 
 
 if __name__ == "__main__":
-    Given.take(sys.argv)
     unittest.main()

@@ -3,30 +3,18 @@
 import json
 import os
 import pathlib
-import socket
 import subprocess
+import sys
 import tempfile
 import unittest
 
 from serial_testing import PATIENCE_S
+from testing import ROOT, RUBRIC
 
-SERIAL = "spec/captures/firmware/a_join_data.serial.bin"
-FORWARDER = "spec/captures/basestation/s04_acks.from_sink.sfstream"
+EXTCAP = os.path.abspath(sys.argv.pop(1))  # After RUBRIC, which testing.py takes.
+SERIAL = ROOT / "spec/captures/firmware/a_join_data.serial.bin"
+FORWARDER = ROOT / "spec/captures/basestation/s04_acks.from_sink.sfstream"
 PACKET = bytes.fromhex("00ffff000003002514000c")  # A config message.
-
-
-class Given:
-    """Paths from the command line."""
-    rubric = ""
-    extcap = ""
-    root = pathlib.Path()
-
-    @classmethod
-    def take(cls, words):
-        """RUBRIC RUBRIC_EXTCAP PROJECT_FOLDER."""
-        cls.root = pathlib.Path(words.pop(3)).resolve()
-        cls.extcap = os.path.abspath(words.pop(2))
-        cls.rubric = os.path.abspath(words.pop(1))
 
 
 def run(*words, **more):
@@ -35,35 +23,12 @@ def run(*words, **more):
 
 
 def decoded(path):
-    out = run(Given.rubric, "decode", path, "--format", "jsonl").stdout
+    out = run(RUBRIC, "decode", path, "--format", "jsonl").stdout
     return [json.loads(line) for line in out.splitlines()]
 
 
 def meaning(records):
     return [(record["path"], record["fields"], record["error"]) for record in records]
-
-
-class Server:
-    """Whom a capture connects to."""
-
-    def __init__(self, test):
-        self.listener = socket.create_server(("127.0.0.1", 0))
-        self.listener.settimeout(PATIENCE_S)
-        self.port = self.listener.getsockname()[1]
-        test.addCleanup(self.listener.close)
-
-    def accept(self, test):
-        connection, _ = self.listener.accept()
-        connection.settimeout(PATIENCE_S)
-        test.addCleanup(connection.close)
-        return connection
-
-    def forward(self, test, data):
-        """As a serial forwarder, from its handshake on."""
-        connection = self.accept(test)
-        test.assertEqual(connection.recv(2), b"U ")
-        connection.sendall(data)
-        return connection
 
 
 class Base(unittest.TestCase):

@@ -12,7 +12,7 @@ import sys
 import time
 import unittest
 
-from testing import RUBRIC, ROOT, Folder, run
+from testing import RUBRIC, ROOT, Folder, run, run_unread
 
 FIRMWARE = ROOT / "spec/captures/firmware"
 CAPTURE = FIRMWARE / "a_join_data.pcapng"
@@ -142,12 +142,7 @@ class Files(Folder):
                       ("generate", "--count", "9"), ("convert", CAPTURE, "--format", "hex"),
                       ("test", "--list"), ("chart", "j4.accept"),
                       ("simulate", "--seconds", "1")):
-            read, write = os.pipe()
-            os.close(read)
-            done = subprocess.run([RUBRIC, *map(str, words)], stdin=subprocess.DEVNULL,
-                                  stdout=write, stderr=subprocess.PIPE, check=False,
-                                  timeout=PATIENCE_S)
-            os.close(write)
+            done = run_unread(*words)
             self.assertEqual(done.returncode, OUTPUT, (words, done.stderr))
             self.assertNotIn(b"cannot write", done.stderr, words)
 

@@ -11,7 +11,7 @@ import unittest
 from forward_testing import Client, from_mote, serving
 from serial_testing import PATIENCE_S
 
-COMMAND = [sys.argv[2], "-cp", sys.argv[3], "rubric.basestation.ForwarderClient"]
+COMMAND = [sys.argv[1], "-cp", sys.argv[2], "rubric.basestation.ForwarderClient"]
 ISLAND = 11
 ISLAND_TO_SINK = bytes.fromhex("0000010000030025") + bytes([10, 0, ISLAND])
 # From mote 5 to the island's base station, to be confirmed: application 10, "OPEN".
@@ -59,5 +59,5 @@ class Java(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    del sys.argv[1:4]
+    del sys.argv[1:3]
     unittest.main()

@@ -5,21 +5,18 @@ Usage: forward_source_test.py RUBRIC. All of it on this host, bounded in time.
 """
 
 import os
-import pathlib
 import pty
 import socket
 import subprocess
-import sys
-import tempfile
 import tty
 import unittest
 
-from forward_testing import (RUBRIC, SANITIZED, Client, Mote, Running, ended, from_mote, packet,
-                             serving)
+from forward_testing import SANITIZED, Client, Mote, Running, from_mote, packet, serving
 from serial_testing import PATIENCE_S, hdlc, held_port
+from testing import RUBRIC, Folder, rubric
 
 
-class Sources(unittest.TestCase):
+class Sources(Folder):
     maxDiff = 2000
 
     def test_a_source_that_goes(self):
@@ -68,35 +65,33 @@ class Sources(unittest.TestCase):
         self.assertEqual(sum(line.endswith(": again") for line in running.complaints), 2)
 
     def test_a_device_that_is_unplugged(self):
-        with tempfile.TemporaryDirectory(prefix="rubric-forward-") as folder:
-            name = pathlib.Path(folder) / "ttyUSB0"
-            running = None
-            for number in range(2):
-                master, slave = pty.openpty()
-                tty.setraw(master)
-                name.symlink_to(os.ttyname(slave))
-                if running is None:
-                    running = Running(self, f"serial@{name}:57600", "--reconnect")
-                    client = Client(self, running)
-                else:
-                    running.wait_for(": again")
-                os.write(master, from_mote(packet(number)))
-                self.assertEqual(client.packet(), packet(number))
-                name.unlink()
-                os.close(slave)
-                os.close(master)
-            self.assertEqual(running.end()[0], 0)
+        name = self.folder / "ttyUSB0"
+        running = None
+        for number in range(2):
+            master, slave = pty.openpty()
+            tty.setraw(master)
+            name.symlink_to(os.ttyname(slave))
+            if running is None:
+                running = Running(self, f"serial@{name}:57600", "--reconnect")
+                client = Client(self, running)
+            else:
+                running.wait_for(": again")
+            os.write(master, from_mote(packet(number)))
+            self.assertEqual(client.packet(), packet(number))
+            name.unlink()
+            os.close(slave)
+            os.close(master)
+        self.assertEqual(running.end()[0], 0)
 
     def test_sources_that_cannot_be(self):
         for source, code, what in (("serial@/no/such:57600", 66, "cannot be opened"),
                                    ("sf@127.0.0.1:1", 66, "cannot connect"),
                                    ("serial@/dev/ttyUSB0", 64, "expected serial@DEVICE:BAUD"),
                                    ("capture.pcapng", 64, "expected serial@DEVICE:BAUD, network")):
-            done = ended(source, "--port", "0")
-            self.assertEqual((done.returncode, done.stdout), (code, ""), source)
-            self.assertIn(what, done.stderr)
+            self.refused(("forward", source, "--port", "0"), what, code)
         environment = {key: value for key, value in os.environ.items() if key != "MOTECOM"}
-        done = ended("--port", "0", env=environment)
+        done = subprocess.run([RUBRIC, "forward", "--port", "0"], capture_output=True, text=True,
+                              check=False, timeout=PATIENCE_S, env=environment)
         self.assertEqual(done.returncode, 64)
         self.assertIn("SOURCE", done.stderr)
 
@@ -129,9 +124,8 @@ class Sources(unittest.TestCase):
     def test_a_forwarder_of_itself(self):
         for more in ([], ["--bind", "0.0.0.0"]):
             with held_port() as port:
-                done = ended(f"sf@127.0.0.1:{port}", "--port", str(port), *more)
-            self.assertEqual(done.returncode, 66)
-            self.assertIn("this is where this forwarder itself listens", done.stderr)
+                self.refused(("forward", f"sf@127.0.0.1:{port}", "--port", port, *more),
+                             "this is where this forwarder itself listens", 66)
 
     def test_the_same_port_of_another_address_is_another_forwarder(self):
         mote = Mote(self).on_a_terminal()
@@ -153,10 +147,8 @@ class Sources(unittest.TestCase):
 
     def test_a_port_that_is_taken(self):
         mote, running = serving(self, terminal=True)
-        done = ended(mote.source, "--port", str(running.port))
-        self.assertEqual(done.returncode, 66)
-        self.assertIn(f"cannot listen at 127.0.0.1, port {running.port}: Address already in use",
-                      done.stderr)
+        self.refused(("forward", mote.source, "--port", str(running.port)),
+                     f"cannot listen at 127.0.0.1, port {running.port}: Address already in use", 66)
 
     def test_other_hosts_are_let_in_only_aloud(self):
         mote, running = serving(self, terminal=True)
@@ -189,49 +181,42 @@ class Sources(unittest.TestCase):
         self.assertEqual(mote.connection.read(100), b"")
 
     def test_what_goes_by_is_kept(self):
-        with tempfile.TemporaryDirectory(prefix="rubric-forward-") as folder:
-            kept = pathlib.Path(folder) / "kept.pcapng"
-            mote, running = serving(self, "--write", kept)
-            client = Client(self, running)
-            mote.say(from_mote(packet(1)))
-            self.assertEqual(client.packet(), packet(1))
-            client.give(packet(2))
-            self.assertEqual(mote.confirmed_packet(), packet(2))
-            mote.say(from_mote(packet(3)))
-            self.assertEqual(client.packet(), packet(3))
-            self.assertEqual(running.end()[0], 0)
-            out = subprocess.run([RUBRIC, "decode", kept, "--format", "csv", "--fields",
-                                  "direction,frame.kind"],
-                                 capture_output=True, text=True, check=False).stdout
+        kept = self.folder / "kept.pcapng"
+        mote, running = serving(self, "--write", kept)
+        client = Client(self, running)
+        mote.say(from_mote(packet(1)))
+        self.assertEqual(client.packet(), packet(1))
+        client.give(packet(2))
+        self.assertEqual(mote.confirmed_packet(), packet(2))
+        mote.say(from_mote(packet(3)))
+        self.assertEqual(client.packet(), packet(3))
+        self.assertEqual(running.end()[0], 0)
+        out = rubric("decode", kept, "--format", "csv", "--fields", "direction,frame.kind")[1]
         self.assertEqual(out.split()[1:],
                          ["outbound,69", "inbound,68", "outbound,67", "outbound,69"])
 
     def test_a_capture_that_cannot_be_written_is_reported_at_once(self):
-        with tempfile.TemporaryDirectory(prefix="rubric-forward-") as folder:
-            kept = pathlib.Path(folder) / "kept.pcapng"
-            mote = Mote(self).on_a_port()
-            running = Running(self, mote.source, "--write", kept,
-                              limits="trap '' XFSZ; ulimit -f 8")  # Of 512 bytes each.
-            mote.accept()
-            client = Client(self, running)
-            mote.say(from_mote(packet(1, 100)) * 100)
-            running.wait_for(f"^rubric: cannot write {kept}: File too large$")
-            mote.say(from_mote(packet(2)))
-            self.assertEqual(client.packets(101)[-1], packet(2))
-            self.assertEqual(running.end()[0], 74)
-            self.assertEqual(sum("File too large" in line for line in running.complaints), 1)
+        kept = self.folder / "kept.pcapng"
+        mote = Mote(self).on_a_port()
+        running = Running(self, mote.source, "--write", kept,
+                          limits="trap '' XFSZ; ulimit -f 8")  # Of 512 bytes each.
+        mote.accept()
+        client = Client(self, running)
+        mote.say(from_mote(packet(1, 100)) * 100)
+        running.wait_for(f"^rubric: cannot write {kept}: File too large$")
+        mote.say(from_mote(packet(2)))
+        self.assertEqual(client.packets(101)[-1], packet(2))
+        self.assertEqual(running.end()[0], 74)
+        self.assertEqual(sum("File too large" in line for line in running.complaints), 1)
 
     def test_a_capture_is_a_regular_file(self):
-        with tempfile.TemporaryDirectory(prefix="rubric-forward-") as folder:
-            pipe = pathlib.Path(folder) / "kept.pcapng"
-            os.mkfifo(pipe)
-            reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
-            self.addCleanup(os.close, reader)
-            done = ended("sf@127.0.0.1:1", "--port", "0", "--write", pipe)
-        self.assertEqual(done.returncode, 64)
-        self.assertIn(f"--write: {pipe} is not a regular file", done.stderr)
+        pipe = self.folder / "kept.pcapng"
+        os.mkfifo(pipe)
+        reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
+        self.addCleanup(os.close, reader)
+        self.refused(("forward", "sf@127.0.0.1:1", "--port", "0", "--write", pipe),
+                     f"--write: {pipe} is not a regular file")
 
 
 if __name__ == "__main__":
-    del sys.argv[1]
     unittest.main()

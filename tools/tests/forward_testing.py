@@ -12,16 +12,14 @@ import select
 import signal
 import socket
 import subprocess
-import sys
 import threading
 import tty
 
 from serial_testing import PATIENCE_S, hdlc, unframed
+from testing import RUBRIC, sanitized
 
-RUBRIC = os.path.abspath(sys.argv[1])
-with open(RUBRIC, "rb") as program:
-    # Sanitizers open pipes to see whether memory can be read: without descriptors they see faults.
-    SANITIZED = b"__ubsan_handle" in program.read()
+# Sanitizers open pipes to see whether memory can be read: without descriptors they see faults.
+SANITIZED = sanitized()
 
 
 def packet(number, size=20):
@@ -198,9 +196,3 @@ def serving(test, *arguments, terminal=False, **more):
     mote = Mote(test).on_a_terminal() if terminal else Mote(test).on_a_port()
     running = Running(test, mote.source, *arguments, **more)
     return mote if terminal else mote.accept(), running
-
-
-def ended(*arguments, **more):
-    """A forwarder that does not begin to serve."""
-    return subprocess.run([RUBRIC, "forward", *arguments], capture_output=True, text=True,
-                          check=False, timeout=PATIENCE_S, **more)

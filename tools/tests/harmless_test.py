@@ -10,6 +10,7 @@ import struct
 import unittest
 
 import testing
+from packets import interface, packet_block, radio, section
 from testing import ROOT
 
 CAPTURE = ROOT / "spec/captures/firmware/b_reliable.pcapng"
@@ -20,24 +21,16 @@ OBEYED = re.compile(rb"[\x00-\x08\x0b-\x1f\x7f]|\xc2[\x80-\x9f]|\xe2\x80[\xaa-\x
 COLOURS = re.compile(rb"\x1b\[[0-9;]*m")
 
 
-def block(kind, body):
-    body += bytes(-len(body) % 4)
-    size = len(body) + 12
-    return struct.pack("<II", kind, size) + body + struct.pack("<I", size)
-
-
 def option(code, value):
     return struct.pack("<HH", code, len(value)) + value + bytes(-len(value) % 4)
 
 
 def capture():
     """Returns one with an evil name of its interface, and frames that break rules."""
-    out = block(0x0A0D0D0A, struct.pack("<IHHq", 0x1A2B3C4D, 1, 0, -1))
-    out += block(1, struct.pack("<HHI", 230, 0, 0) + option(2, EVIL) + option(0, b""))
+    out = section() + interface(230, option(2, EVIL) + option(0, b""))
     for i in range(9):
-        frame = struct.pack("<HBHHHBB", 0x8841, i, 0x22, 0xFFFF, 2, 0x3F, 14)
-        frame += struct.pack(">HBHB", i, 1, 0x43, 1)
-        out += block(6, struct.pack("<IIIII", 0, 0, i * 1000, len(frame), len(frame)) + frame)
+        frame = radio(i, 0xFFFF, 2, 14, struct.pack(">HBHB", i, 1, 0x43, 1))
+        out += packet_block(i * 1000, frame)
     return out
 
 

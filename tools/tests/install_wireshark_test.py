@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Live captures by tshark with rubric-extcap, and `rubric install-wireshark`, which makes it known.
 
-Usage: install_wireshark_test.py RUBRIC RUBRIC_EXTCAP PROJECT_FOLDER. Needs tshark.
+Usage: install_wireshark_test.py RUBRIC RUBRIC_EXTCAP. Needs tshark.
 """
 
 import os
@@ -11,12 +11,13 @@ import resource
 import select
 import shutil
 import signal
-import sys
 import time
 import unittest
 
-from extcap_testing import FORWARDER, PACKET, SERIAL, Base, Given, Server, decoded, run
-from serial_testing import PATIENCE_S, Pty, hdlc, wait_for
+from extcap_testing import EXTCAP, FORWARDER, PACKET, SERIAL, Base, decoded, run
+from live_testing import Forwarder
+from serial_testing import PATIENCE_S, Pty, hdlc, read_until, wait_for
+from testing import ROOT, RUBRIC
 
 CONFIG = pathlib.Path(".config/wireshark/extcap/rubric-extcap")
 
@@ -26,7 +27,7 @@ class Wireshark(Base):
 
     def setUp(self):
         super().setUp()
-        done = run(Given.rubric, "install-wireshark", env=self.environment)
+        done = run(RUBRIC, "install-wireshark", env=self.environment)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
 
     def tshark(self, source, *more):
@@ -38,17 +39,10 @@ class Wireshark(Base):
                             *more)
 
     def lines(self, process, count):
-        got = b""
-        deadline = time.monotonic() + PATIENCE_S
-        while got.count(b"\n") < count:
-            left = max(0, deadline - time.monotonic())
-            more = b""
-            if select.select([process.stdout], [], [], left)[0]:
-                more = os.read(process.stdout.fileno(), 1 << 16)
-            if not more:
-                process.kill()
-                raise AssertionError(f"{got.count(10)} of {count} lines: {self.ended(process)}")
-            got += more
+        got, came = read_until(process.stdout.fileno(), lambda got: got.count(b"\n") >= count)
+        if not came:
+            process.kill()
+            raise AssertionError(f"{got.count(10)} of {count} lines: {self.ended(process)}")
         return [line.split("|") for line in got.decode().splitlines()]
 
     def nothing_left(self, mark):
@@ -80,11 +74,11 @@ class Wireshark(Base):
             self.assertIn(f"#extcap.rubric.{name}:", done.stdout)
 
     def test_a_serial_forwarder(self):
-        server = Server(self)
+        server = Forwarder(self)
         address = f"sf@127.0.0.1:{server.port}"
         process = self.tshark(address)
-        connection = server.forward(self, (Given.root / FORWARDER).read_bytes())
-        wanted = decoded(Given.root / FORWARDER)
+        connection = server.accept(FORWARDER.read_bytes())
+        wanted = decoded(FORWARDER)
         lines = self.lines(process, len(wanted))  # While the source stays open.
         self.assertIsNone(process.poll())
         self.assertEqual([line[1] for line in lines], ["/".join(one["path"]) for one in wanted])
@@ -100,19 +94,19 @@ class Wireshark(Base):
         self.nothing_left(address)
 
     def test_a_serial_line_by_tcp(self):
-        server = Server(self)
+        server = Forwarder(self)
         address = f"network@127.0.0.1:{server.port}"
         process = self.tshark("", "-o", f"extcap.rubric.othersource:{address}", "-o",
                               "extcap.rubric.listenonly:true")
-        connection = server.accept(self)
+        connection = server.line()
         connection.sendall(hdlc(b"\x44\x2a" + PACKET))
         connection.sendall(hdlc(b"\x45" + PACKET, wrong=0x10))
-        connection.sendall((Given.root / SERIAL).read_bytes()[:3000])
+        connection.sendall(SERIAL.read_bytes()[:3000])
         lines = self.lines(process, 20)
         self.assertEqual({line[0] for line in lines}, {"45"})  # WTAP_ENCAP_USER0
         self.assertEqual(lines[0][1], "config")
         self.assertEqual([line[3] for line in lines[:2]], ["", "crc"])
-        wanted = decoded(Given.root / SERIAL)[:18]
+        wanted = decoded(SERIAL)[:18]
         self.assertEqual([line[1] for line in lines[2:20]],
                          ["/".join(one["path"]) for one in wanted])
         os.killpg(process.pid, signal.SIGINT)  # As Ctrl-C does it.
@@ -148,17 +142,17 @@ class Wireshark(Base):
             self.assertIn("0 packets captured", err)
 
     def test_a_peer_that_goes(self):
-        server = Server(self)
+        server = Forwarder(self)
         process = self.tshark(f"sf@127.0.0.1:{server.port}")
-        server.forward(self, (Given.root / FORWARDER).read_bytes()).close()
-        wanted = decoded(Given.root / FORWARDER)
+        server.accept(FORWARDER.read_bytes()).close()
+        wanted = decoded(FORWARDER)
         self.assertEqual(len(self.lines(process, len(wanted))), len(wanted))
         self.assertIn("the other end closed it", self.ended(process)[1])
 
 
 class Install(Base):
     def install(self, *words, code=0, program=None):
-        done = run(program or Given.rubric, "install-wireshark", *words, env=self.environment)
+        done = run(program or RUBRIC, "install-wireshark", *words, env=self.environment)
         self.assertEqual(done.returncode, code, done)
         return done.stdout + done.stderr
 
@@ -177,9 +171,9 @@ class Install(Base):
             self.assertIn(f"wrote {lua}/rubric.lua\n", said)
             self.assertEqual(len(self.tree()), 3)
         self.assertEqual(pathlib.Path(lua, "rubric.lua").read_bytes(),
-                         (Given.root / "tools/wireshark/generated/rubric.lua").read_bytes())
+                         (ROOT / "tools/wireshark/generated/rubric.lua").read_bytes())
         link = next(self.home.rglob("rubric-extcap"))
-        self.assertEqual(os.path.realpath(link), os.path.realpath(Given.extcap))
+        self.assertEqual(os.path.realpath(link), os.path.realpath(EXTCAP))
         self.assertIn("removed", self.install("--remove"))
         self.assertEqual(self.tree(), [])
         self.assertIn("not there", self.install("--remove"))
@@ -194,7 +188,7 @@ class Install(Base):
     def test_colouring_rules(self):
         """Faults, remarkable frames and acknowledgements have rules; Wireshark's and the user's
         stay."""
-        capture = Given.root / "spec/captures/firmware/h4_stale_bytes.pcapng"
+        capture = ROOT / "spec/captures/firmware/h4_stale_bytes.pcapng"
         self.install()
         rules = self.rules_of(capture)
         self.assertEqual([i + 1 for i, name in enumerate(rules)
@@ -274,16 +268,16 @@ class Install(Base):
         program.parent.mkdir()
         program.symlink_to("/gone/rubric-extcap")
         self.install("--dir", self.home)
-        self.assertEqual(os.path.realpath(program), os.path.realpath(Given.extcap))
+        self.assertEqual(os.path.realpath(program), os.path.realpath(EXTCAP))
         program.unlink()
-        shutil.copy(Given.extcap, program)  # As where there are no links.
+        shutil.copy(EXTCAP, program)  # As where there are no links.
         self.install("--dir", self.home)
         self.assertTrue(program.is_symlink())
 
     def test_a_program_that_lacks_its_other_half(self):
         alone = self.folder / "alone"
         alone.mkdir()
-        shutil.copy(Given.rubric, alone / "rubric")
+        shutil.copy(RUBRIC, alone / "rubric")
         said = self.install("--dir", self.home, code=66, program=alone / "rubric")
         self.assertIn(f"{alone}/rubric-extcap: there is no such file", said)
         self.assertEqual(self.tree(), [])
@@ -292,9 +286,9 @@ class Install(Base):
         """The program itself is in Wireshark's folder, where somebody may have put it."""
         folder = self.home / "extcap"
         folder.mkdir()
-        for name, path in (("rubric", Given.rubric), ("rubric-extcap", Given.extcap)):
+        for name, path in (("rubric", RUBRIC), ("rubric-extcap", EXTCAP)):
             shutil.copy(path, folder / name)
-        whole = pathlib.Path(Given.extcap).read_bytes()
+        whole = pathlib.Path(EXTCAP).read_bytes()
         for words in ([], ["--force"], ["--dry-run"], ["--remove"]):
             said = self.install("--dir", self.home, *words, code=74, program=folder / "rubric")
             self.assertIn(f"{folder}/rubric-extcap: this is the program itself", said)
@@ -302,7 +296,7 @@ class Install(Base):
         self.assertEqual((folder / "rubric-extcap").read_bytes(), whole)
         beside = self.folder / "programs"  # Whose rubric-extcap is a link to there.
         beside.mkdir()
-        shutil.copy(Given.rubric, beside / "rubric")
+        shutil.copy(RUBRIC, beside / "rubric")
         (beside / "rubric-extcap").symlink_to(folder / "rubric-extcap")
         said = self.install("--dir", self.home, code=74, program=beside / "rubric")
         self.assertIn("this is the program itself", said)
@@ -318,7 +312,7 @@ class Install(Base):
         dissector = self.home / "plugins/rubric.lua"
         dissector.write_text("-- Generated by rubricc from before\n", encoding="utf-8")
         tree = self.tree()
-        done = run(Given.rubric, "install-wireshark", "--dir", self.home, env=self.environment,
+        done = run(RUBRIC, "install-wireshark", "--dir", self.home, env=self.environment,
                    preexec_fn=fill)
         self.assertEqual((done.returncode, done.stdout), (74, ""), done)
         self.assertIn("File too large", done.stderr)
@@ -335,5 +329,4 @@ class Install(Base):
 
 
 if __name__ == "__main__":
-    Given.take(sys.argv)
     unittest.main()

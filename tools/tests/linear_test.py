@@ -12,6 +12,7 @@ import sys
 import tempfile
 import unittest
 
+from packets import interface, packet_block, radio, section
 from testing import RUBRIC, Folder
 
 PARTS = 60
@@ -21,24 +22,9 @@ CPU_MOST = 4 * STEP
 CPU_FLOOR_S = 0.1  # Less is start and noise.
 
 
-def block(kind, body):
-    body += bytes(-len(body) % 4)
-    size = len(body) + 12
-    return struct.pack("<II", kind, size) + body + struct.pack("<I", size)
-
-
 def capture(frames, apart_us=1000):
-    out = block(0x0A0D0D0A, struct.pack("<IHHq", 0x1A2B3C4D, 1, 0, -1))
-    out += block(1, struct.pack("<HHI", 230, 0, 0))
-    for i, frame in enumerate(frames):
-        time = i * apart_us
-        head = struct.pack("<IIIII", 0, time >> 32, time & 0xFFFFFFFF, len(frame), len(frame))
-        out += block(6, head + frame)
-    return out
-
-
-def radio(number, dest, src, kind, payload):
-    return struct.pack("<HBHHHBB", 0x8841, number & 255, 0x22, dest, src, 0x3F, kind) + payload
+    return section() + interface(230) + b"".join(packet_block(i * apart_us, frame)
+                                                 for i, frame in enumerate(frames))
 
 
 def request(number):

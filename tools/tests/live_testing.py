@@ -1,30 +1,23 @@
 """Helpers of the tests of lines in use: the program, and the other ends of lines.
 
-Their arguments are RUBRIC PROJECT_FOLDER. All of it is on this host, and bounded in time.
+All of it is on this host, and bounded in time.
 """
 
 import json
 import os
-import pathlib
 import select
 import signal
 import socket
 import subprocess
-import sys
-import tempfile
 import threading
-import time
 import unittest
 
-from serial_testing import PACKET_ACK, PATIENCE_S, unframed
-
-RUBRIC = os.path.abspath(sys.argv.pop(1))
-ROOT = pathlib.Path(sys.argv.pop(1)).resolve()
+from serial_testing import PACKET_ACK, PATIENCE_S, read_until, unframed, wait_for
+from testing import ROOT, RUBRIC, Folder, rubric
 
 
 def lines_of(path, *arguments):
-    out = subprocess.run([RUBRIC, "decode", ROOT / path, "--format", "jsonl", *arguments],
-                         capture_output=True, check=False).stdout
+    out = rubric("decode", ROOT / path, "--format", "jsonl", *arguments)[1]
     return [json.loads(line) for line in out.splitlines()]
 
 
@@ -45,16 +38,11 @@ class Running:
 
     def text_lines(self, count):
         """The next lines."""
-        deadline = time.monotonic() + PATIENCE_S
-        while self.read.count(b"\n") < count:
-            left = max(0, deadline - time.monotonic())
-            more = b""
-            if select.select([self.process.stdout], [], [], left)[0]:
-                more = os.read(self.process.stdout.fileno(), 1 << 16)
-            if not more:
-                self.process.kill()
-                raise AssertionError(f"{self.read.count(10)} of {count} lines: {self.end(None)}")
-            self.read += more
+        self.read, came = read_until(self.process.stdout.fileno(),
+                                     lambda got: got.count(b"\n") >= count, self.read)
+        if not came:
+            self.process.kill()
+            raise AssertionError(f"{self.read.count(10)} of {count} lines: {self.end(None)}")
         *found, self.read = self.read.split(b"\n", count)
         return [line.decode() for line in found]
 
@@ -81,11 +69,18 @@ class Forwarder:
         self.listener = socket.create_server(("127.0.0.1", port))
         self.listener.settimeout(PATIENCE_S)
         self.port = self.listener.getsockname()[1]
+        self.test = test
         test.addCleanup(self.listener.close)
 
-    def accept(self, data):
+    def line(self):
+        """A connection without a handshake, as one of a serial line has none."""
         connection, _ = self.listener.accept()
         connection.settimeout(PATIENCE_S)
+        self.test.addCleanup(connection.close)
+        return connection
+
+    def accept(self, data):
+        connection = self.line()
         if connection.recv(2) != b"U ":
             raise AssertionError("no handshake")
         connection.sendall(data)
@@ -101,11 +96,7 @@ class Flood(threading.Thread):
         self.data = data * (1 + (1 << 18) // len(data))
         self.rounds = 0
         self.start()
-        deadline = time.monotonic() + PATIENCE_S
-        while self.rounds < 4:
-            if time.monotonic() > deadline:
-                raise AssertionError("nobody reads")
-            time.sleep(0.01)
+        wait_for(lambda: self.rounds >= 4, "somebody reads")
 
     def run(self):
         try:
@@ -175,14 +166,15 @@ class Mote:
             raise self.error
 
 
-class LiveTest(unittest.TestCase):
+class LiveTest(Folder):
     maxDiff = 2000
     program = Running
 
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="rubric-live-")
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
+    def passes(self, path):
+        """`rubric check` finds no fault in this file. Returns its report."""
+        code, out, _ = rubric("check", path)
+        self.assertEqual(code, 0, out)
+        return out
 
     def started(self, *arguments, **more):
         running = self.program(*arguments, **more)

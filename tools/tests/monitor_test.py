@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """`rubric monitor` of a real island: by its air, its forwarder and the tuple space of a broker.
 
-Usage: monitor_test.py RUBRIC PROJECT_FOLDER MOSQUITTO. All of it on this host's loopback.
+Usage: monitor_test.py RUBRIC MOSQUITTO. All of it on this host's loopback.
 """
 
 import fcntl
@@ -18,9 +18,10 @@ import unittest
 
 from space_test import USER, Broker
 from check_live_testing import BROKEN_LINE, data
-from live_testing import RUBRIC, Forwarder, LiveTest, Running
+from live_testing import Forwarder, LiveTest, Running
 from run_test import Node
 from serial_testing import PATIENCE_S, held_port
+from testing import RUBRIC, rubric
 
 # A reading of long ago.
 OLD = '{"creator":"11:null","time":"2020-01-31T23:59:59.123Z","data":{"light":{"raw":9}}}'
@@ -89,8 +90,7 @@ class Monitor(LiveTest):
     def test_a_forwarder_with_a_broken_rule(self):
         server = Forwarder(self)
         watch = self.started(f"sf@127.0.0.1:{server.port}")
-        connection = server.accept(data(BROKEN_LINE))
-        self.addCleanup(connection.close)
+        server.accept(data(BROKEN_LINE))
         self.assertIn("FAIL J6-CONTENT, sink of island 12, frame 2 at ", watch.until("FAIL "))
         code, out, err = watch.end()
         self.assertEqual((code, err), (1, ""))
@@ -171,10 +171,9 @@ class Monitor(LiveTest):
                 ((), 64, "SOURCE"), (("run.pcapng",), 64, "expected a line such as"),
                 (("mqtt://me:secret@x",), 64, "into a file or the environment"),
                 (("sf@127.0.0.1:1",), 66, "refused")):
-            run = subprocess.run([RUBRIC, "monitor", *arguments], capture_output=True, check=False,
-                                 text=True)
-            self.assertEqual(run.returncode, code, run.stderr)
-            self.assertIn(text, run.stderr)
+            got, _, err = rubric("monitor", *arguments)
+            self.assertEqual(got, code, err)
+            self.assertIn(text, err)
 
 
 if __name__ == "__main__":

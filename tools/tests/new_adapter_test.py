@@ -9,10 +9,9 @@ import re
 import shutil
 import subprocess
 import sys
-import tempfile
 import unittest
 
-from testing import RUBRIC
+from testing import Folder, rubric, run
 
 SKELETONS = {
     "python": ([], ["python3", "adapter.py"], "mote"),
@@ -51,10 +50,9 @@ def is_as(expected, line):
     return line.startswith(expected[:-3]) if expected.endswith("...") else line == expected
 
 
-class NewAdapter(unittest.TestCase):
-    def write(self, language, folder):
-        return subprocess.run([RUBRIC, "new-adapter", language, "--out", folder],
-                              capture_output=True, text=True)
+class NewAdapter(Folder):
+    def made(self, language, folder):
+        return run("new-adapter", language, "--out", folder, text=True)
 
     def speak(self, command, folder, role):
         child = subprocess.Popen(command, cwd=folder, stdin=subprocess.PIPE,
@@ -69,26 +67,26 @@ class NewAdapter(unittest.TestCase):
         self.assertEqual((rest, child.returncode), ("", 0))
 
     def test_each_language(self):
-        for language, (build, run, role) in SKELETONS.items():
-            with self.subTest(language), tempfile.TemporaryDirectory() as folder:
-                out = folder + "/new/adapter"
-                written = self.write(language, out)
+        for language, (build, node, role) in SKELETONS.items():
+            with self.subTest(language):
+                out = self.folder / language / "new/adapter"
+                written = self.made(language, out)
                 self.assertEqual((written.returncode, written.stderr), (0, ""))
                 self.assertIn("rubric test --target", written.stdout)
-                text = "".join(file.read_text() for file in pathlib.Path(out).iterdir())
+                text = "".join(file.read_text() for file in out.iterdir())
                 self.assertIn("TODO", text)
                 if build:
                     subprocess.run(build, cwd=out, check=True)
-                self.speak(run, out, role)
-                self.try_suite(run, out)
+                self.speak(node, out, role)
+                self.try_suite(node, out)
 
-    def try_suite(self, run, folder):
+    def try_suite(self, node, folder):
         """Nothing fails, but nothing is green either unless what the node cannot do is listed."""
         def tried(*words):
-            done = subprocess.run([RUBRIC, "test", "--target", " ".join(run), "--format", "tap",
-                                   *words], cwd=folder, capture_output=True, text=True)
-            self.assertEqual(done.stderr, "")
-            return done.returncode, done.stdout
+            code, out, err = rubric("test", "--target", " ".join(node), "--format", "tap", *words,
+                                    cwd=folder)
+            self.assertEqual(err, "")
+            return code, out
         code, out = tried()
         self.assertEqual(code, 3, out)
         self.assertGreater(len(re.findall(r"^not ok .*: ", out, re.M)), 100)
@@ -99,29 +97,23 @@ class NewAdapter(unittest.TestCase):
         self.assertGreaterEqual(len(passed), 3)
         self.assertIn("# SKIP skip: The node has no join() yet.", out)
         self.assertNotIn("not ok", out)
-        known = pathlib.Path(folder) / "known.yaml"
+        known = folder / "known.yaml"
         known.write_text(known.read_text().replace("    - j1.request\n", "", 1))
         code, out = tried("--expect", "known.yaml")
         self.assertEqual(code, 3)
         self.assertEqual(out.count("not ok"), 1)
 
     def test_overwrites_nothing(self):
-        with tempfile.TemporaryDirectory() as folder:
-            mine = pathlib.Path(folder) / "my_node.h"
-            mine.write_text("mine")
-            written = self.write("cpp", folder)
-            self.assertEqual(written.returncode, 74)
-            self.assertIn("my_node.h: it exists", written.stderr)
-            self.assertEqual(mine.read_text(), "mine")
-            self.assertEqual([mine], list(pathlib.Path(folder).iterdir()))
+        mine = self.write("my_node.h", "mine")
+        self.refused(("new-adapter", "cpp", "--out", self.folder), "my_node.h: it exists", 74)
+        self.assertEqual(mine.read_text(), "mine")
+        self.assertEqual([mine], list(self.folder.iterdir()))
 
     def test_mistakes(self):
-        self.assertEqual(self.write("cobol", "x").returncode, 64)
+        self.assertEqual(self.made("cobol", "x").returncode, 64)
         self.assertFalse(pathlib.Path("x").exists())
-        with tempfile.NamedTemporaryFile() as file:
-            written = self.write("python", file.name + "/deep")
-            self.assertEqual(written.returncode, 74)
-            self.assertIn("cannot write", written.stderr)
+        file = self.write("file", "")
+        self.refused(("new-adapter", "python", "--out", file / "deep"), "cannot write", 74)
 
 
 if __name__ == "__main__":

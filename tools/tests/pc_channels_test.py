@@ -25,8 +25,7 @@ class Channels(Folder):
             lines += [f"case pc.call{i}", "; A call of channels.",
                       "%node bA base_station island=11 iut", f"a: 100     bA < app {call}",
                       f"   a+0..50 bA > app {answer}"]
-        trace = self.folder / "pc.rtr"
-        trace.write_text("\n".join(lines) + "\n", encoding="utf-8")
+        trace = self.write("pc.rtr", "\n".join(lines) + "\n")
         for target in TARGETS:
             with self.subTest(target=target):
                 _, out, err = rubric("test", "--target", target, trace)

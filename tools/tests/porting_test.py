@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """conformance/PORTING.md shows what happens: the loop, the conversations, the failure.
 
-Usage: porting_test.py RUBRIC PROJECT_FOLDER [--regenerate]
+Usage: porting_test.py RUBRIC [--regenerate]
 --regenerate writes the loop and the failure into the text.
 """
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """`rubric run proxy`: one access point over motes behind a sink and a network of lines.
 
-Usage: proxy_test.py RUBRIC PROJECT_FOLDER. All of it on this host's loopback.
+Usage: proxy_test.py RUBRIC. All of it on this host's loopback.
 """
 
 import json
@@ -12,8 +12,9 @@ import subprocess
 import sys
 import unittest
 
-from live_testing import ROOT, Flood, LiveTest, Running
+from live_testing import Flood, LiveTest, Running
 from serial_testing import PATIENCE_S
+from testing import ROOT
 
 HOME = ROOT / "conformance/node/examples/home_lines.py"
 MASKS = {"light": 1, "temp": 2}

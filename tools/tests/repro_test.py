@@ -96,8 +96,7 @@ class Whole(Folder):
             self.assertEqual(run("test", "--target", "machine", trace)[0], 0, seed)
 
     def test_network(self):
-        walk = self.folder / "walk"
-        walk.write_bytes(bytes([0]) + bytes(range(200)))
+        walk = self.write("walk", bytes([0]) + bytes(range(200)))
         code, out, err = run("repro", "network", walk)
         self.assertEqual((code, err), (0, "nothing is broken\n"))
         self.assertIn("join_request", out)

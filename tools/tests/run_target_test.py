@@ -1,18 +1,18 @@
 #!/usr/bin/env python3
 """Other implementations as motes of a virtual air: `rubric run mote --target`.
 
-Usage: run_target_test.py RUBRIC PROJECT_FOLDER TARGET... All of it on this host's loopback.
+Usage: run_target_test.py RUBRIC TARGET... All of it on this host's loopback.
 """
 
-import subprocess
 import sys
 import unittest
 
-from live_testing import ROOT, RUBRIC
 from run_test import IslandTest
+from testing import ROOT, rubric
 
 TARGETS = sys.argv[1:]
 del sys.argv[1:]
+MOTE = ("run", "mote", "--id", "5", "--radio", "zep:0")
 
 # A target that only lets time pass.
 NO_CALLS = """
@@ -25,11 +25,6 @@ for line in sys.stdin:
 
 
 class Targets(IslandTest):
-    def judged(self, kept):
-        checked = subprocess.run([RUBRIC, "check", kept], capture_output=True, check=False,
-                                 text=True)
-        self.assertEqual(checked.returncode, 0, checked.stdout)
-
     def island_with(self, target):
         kept, log = self.folder / "run.pcapng", self.folder / "mote.rtr"
         sink, base, air = self.island(kept)
@@ -69,7 +64,7 @@ class Targets(IslandTest):
                 for node in (mote, ours, base, sink):
                     self.assertEqual(node.end()[0], 0)
                 for one in kept:
-                    self.judged(one)
+                    self.passes(one)
                     one.unlink()
 
     def test_clear_errors(self):
@@ -77,10 +72,7 @@ class Targets(IslandTest):
                                    ("read x; echo hello rct/1 x 1 roles=mote time=real", 64,
                                     "whose clock can be turned"),
                                    ("machine:flies", 64, "flies")):
-            run = subprocess.run([RUBRIC, "run", "mote", "--id", "5", "--radio", "zep:0",
-                                  "--target", target], capture_output=True, check=False, text=True)
-            self.assertEqual(run.returncode, code, run.stderr)
-            self.assertIn(text, run.stderr)
+            self.refused((*MOTE, "--target", target), text, code)
 
     def test_a_call_that_is_unsupported(self):
         """It is an error for who called, and the node goes on."""
@@ -94,22 +86,17 @@ class Targets(IslandTest):
         mote.event("joined", own="11:5", success=True)
 
     def test_a_mote_of_a_file_that_breaks(self):
-        script = self.folder / "target.py"
-        script.write_text(NO_CALLS, encoding="utf-8")
-        plan = self.folder / "islands.yaml"
-        plan.write_text("islands:\n  - island: 11\n    radio: zep:0\n    motes:\n"
-                        f"      - {{id: 5, target: exec python3 {script}}}\n", encoding="utf-8")
-        run = subprocess.run([RUBRIC, "run", plan], capture_output=True, check=False, text=True)
-        self.assertEqual(run.returncode, 66, run.stderr)
-        self.assertRegex(run.stderr, "rubric: mote11_5: .*: unsupported: ")
+        script = self.write("target.py", NO_CALLS)
+        plan = self.write("islands.yaml", "islands:\n  - island: 11\n    radio: zep:0\n    motes:\n"
+                          f"      - {{id: 5, target: exec python3 {script}}}\n")
+        code, _, err = rubric("run", plan)
+        self.assertEqual(code, 66, err)
+        self.assertRegex(err, "rubric: mote11_5: .*: unsupported: ")
 
     def test_a_mote_that_breaks(self):
         command = ("read x; echo hello rct/1 x 1 roles=mote time=virtual; read x; echo ready; "
                    "echo broken >&2; false")
-        run = subprocess.run([RUBRIC, "run", "mote", "--id", "5", "--radio", "zep:0", "--target",
-                              command], capture_output=True, check=False, text=True)
-        self.assertEqual(run.returncode, 66, run.stderr)
-        self.assertIn("broken\n", run.stderr)
+        self.refused((*MOTE, "--target", command), "broken\n", 66)
 
 
 if __name__ == "__main__":

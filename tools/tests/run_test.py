@@ -1,25 +1,24 @@
 #!/usr/bin/env python3
 """`rubric run`: nodes on a virtual air, whole islands, and what check says of what they kept.
 
-Usage: run_test.py RUBRIC PROJECT_FOLDER [Minute]. All of it on this host's loopback. Each step
+Usage: run_test.py RUBRIC [Minute]. All of it on this host's loopback. Each step
 waits for what it needs, and only a bound of patience ends it otherwise; Minute alone runs for a
 minute.
 """
 
 import fcntl
 import json
-import os
 import pathlib
 import re
-import select
 import socket
 import subprocess
 import time
 import unittest
 
-from live_testing import RUBRIC, ROOT, Flood, LiveTest, Running, lines_of
-from serial_testing import PATIENCE_S
+from live_testing import Flood, LiveTest, Running, lines_of
+from serial_testing import PATIENCE_S, read_until
 from station_load import PACKET, message
+from testing import ROOT, RUBRIC, rubric
 
 # The PC of an island knocks at the door of another until it is open.
 KNOCK = """
@@ -82,15 +81,11 @@ class Node(Running):
 
     def waits_for(self, pattern):
         """The first group of the next text on stderr that matches."""
-        deadline = time.monotonic() + PATIENCE_S
-        while not (found := re.search(pattern, self.said)):
-            left = max(0, deadline - time.monotonic())
-            more = b""
-            if select.select([self.process.stderr], [], [], left)[0]:
-                more = os.read(self.process.stderr.fileno(), 4096)
-            if not more:
-                raise AssertionError(f"no {pattern} in {self.said}")
-            self.said += more
+        self.said, came = read_until(self.process.stderr.fileno(),
+                                     lambda said: re.search(pattern, said), self.said)
+        if not came:
+            raise AssertionError(f"no {pattern} in {self.said}")
+        found = re.search(pattern, self.said)
         self.said = self.said[found.end():]
         return found.group(1).decode()
 
@@ -148,26 +143,21 @@ class Run(IslandTest):
         messages = [record["message"] for record in lines_of(kept)]
         for wanted in ("join_request", "join_reply", "ack_join", "mac_ack", "config"):
             self.assertIn(wanted, messages)
-        checked = subprocess.run([RUBRIC, "check", kept], capture_output=True, check=False,
-                                 text=True)
-        self.assertEqual(checked.returncode, 0, checked.stdout)
-        self.assertIn("mote 3", checked.stdout)
+        self.assertIn("mote 3", self.passes(kept))
 
     def judged(self, *files):
-        checked = subprocess.run([RUBRIC, "check", *files, "--format", "json"],
-                                 capture_output=True, check=False, text=True)
-        report = json.loads(checked.stdout)
+        code, out, _ = rubric("check", *files, "--format", "json")
+        report = json.loads(out)
         bad = [one["text"] for one in report["findings"]
                if one["severity"] in ("fail", "weak", "stray")]
-        self.assertEqual((bad, checked.returncode), ([], 0), files)
+        self.assertEqual((bad, code), ([], 0), files)
         return report
 
     def islands(self, more="", knock="", loss=5):
         """Two islands with loss; the PC of island 12 opens the door of island 11."""
-        (self.folder / "knock.py").write_text(KNOCK, encoding="utf-8")
+        knocker = self.write("knock.py", KNOCK)
         door = ROOT / "conformance/node/examples/door.py"
-        plan = self.folder / "islands.yaml"
-        plan.write_text(f"""
+        plan = self.write("islands.yaml", f"""
 loss: {loss}
 seed: 5
 islands:
@@ -179,10 +169,10 @@ islands:
 {more}
   - island: 12
     radio: zep:0
-    app: python3 {self.folder / "knock.py"} {knock}
+    app: python3 {knocker} {knock}
     motes:
       - {{id: 7, app: demo}}
-""", encoding="utf-8")
+""")
         return self.started(plan, "--write", self.folder / "run.pcapng", "--log",
                             self.folder / "run.rtr")
 
@@ -257,9 +247,7 @@ islands:
         self.judged(kept)
         self.assertIn("mote_left(address=11:5)", kept.read_text(encoding="utf-8"))
         self.judged(radio, "--state", "gone_after=1024")
-        blamed = subprocess.run([RUBRIC, "check", radio], capture_output=True, check=False,
-                                text=True)
-        self.assertIn("J2-LISTED", blamed.stdout)
+        self.assertIn("J2-LISTED", rubric("check", radio)[1])
 
     def test_a_sink_waits_on_its_lines(self):
         """It runs when a line brings something, not some time later: it does not look again and
@@ -321,13 +309,10 @@ islands:
         """A file with a mote for each of these applications, in Python, the first one mote 2."""
         motes = ""
         for number, app in enumerate(apps, 2):
-            script = self.folder / f"app{number}.py"
-            script.write_text(app, encoding="utf-8")
+            script = self.write(f"app{number}.py", app)
             motes += f"      - {{id: {number}, app: exec python3 {script}}}\n"
-        plan = self.folder / "motes.yaml"
-        plan.write_text(f"islands:\n  - island: 11\n    radio: zep:0\n    motes:\n{motes}",
-                        encoding="utf-8")
-        return plan
+        return self.write("motes.yaml",
+                          f"islands:\n  - island: 11\n    radio: zep:0\n    motes:\n{motes}")
 
     def test_a_node_that_ends_takes_no_events_along(self):
         """All nodes of a file write to one output, which a slow reader has not taken yet."""
@@ -345,10 +330,9 @@ islands:
     def test_base_stations_hear_of_the_first_joins(self):
         """No mote joins before somebody listens at its sink's serial line."""
         islands = range(11, 16)
-        plan = self.folder / "islands.yaml"
-        plan.write_text("islands:\n" + "".join(
+        plan = self.write("islands.yaml", "islands:\n" + "".join(
             f"  - {{island: {island}, radio: 'zep:0', motes: [{{id: 5}}]}}\n"
-            for island in islands), encoding="utf-8")
+            for island in islands))
         run = self.started(plan)
         told = {run.event("received")["src"] for _ in islands}
         self.assertEqual(told, {f"{island}:5" for island in islands})
@@ -379,10 +363,9 @@ islands:
                               ("--target", "machine"), ("--type", "2"), ("--loss", "5"),
                               ("--transducers", "temp"), ("--actuators", "open"),
                               ("--listen", "1"), ("--network", "lines:x:1")):
-            run = subprocess.run([RUBRIC, "run", plan, option, value], capture_output=True,
-                                 check=False, text=True, timeout=PATIENCE_S)
-            self.assertEqual(run.returncode, 64, run.stderr)
-            self.assertRegex(run.stderr, option + ": (write it in FILE.yaml, as|is a|each base)")
+            code, _, err = rubric("run", plan, option, value)
+            self.assertEqual(code, 64, err)
+            self.assertRegex(err, option + ": (write it in FILE.yaml, as|is a|each base)")
         log = self.folder / "run.rtr"
         run = self.started(plan, "--gone-after", "30", "--log", log)
         run.waits_for(rb"(connected)")
@@ -436,24 +419,17 @@ islands:
                 (island + "    serial: pty\n    app: x\n", 4, "the program at 'serial'"),
                 ("space: peis\n" + island, 1, "memory or mqtt://"),
                 ("islands: [\n", 2, "no comma or bracket where one must be")):
-            plan = self.folder / "islands.yaml"
-            plan.write_text(text, encoding="utf-8")
-            run = subprocess.run([RUBRIC, "run", plan], capture_output=True, check=False,
-                                 text=True, stdin=subprocess.DEVNULL)
-            self.assertEqual(run.returncode, 64, run.stderr)
-            self.assertIn(f"{plan}:{line}: ", run.stderr)
-            self.assertIn(what, run.stderr)
-        plan.write_text(island, encoding="utf-8")
-        run = subprocess.run([RUBRIC, "run", plan, "--home-assistant"], capture_output=True,
-                             check=False, text=True, stdin=subprocess.DEVNULL)
-        self.assertEqual(run.returncode, 64)
-        self.assertIn("--home-assistant: needs a space at a broker", run.stderr)
-        plan.write_text(island + "    radio: zep:0\n    motes: [{id: 2, target: 'machine:x'}]\n",
-                        encoding="utf-8")
-        run = subprocess.run([RUBRIC, "run", plan], capture_output=True, check=False,
-                             text=True, stdin=subprocess.DEVNULL)
-        self.assertEqual(run.returncode, 64)
-        self.assertIn("rubric: mote11_2: the machine has no flaw 'x'", run.stderr)
+            plan = self.write("islands.yaml", text)
+            code, _, err = rubric("run", plan)
+            self.assertEqual(code, 64, err)
+            self.assertIn(f"{plan}:{line}: ", err)
+            self.assertIn(what, err)
+        self.write("islands.yaml", island)
+        self.refused(("run", plan, "--home-assistant"),
+                     "--home-assistant: needs a space at a broker")
+        self.write("islands.yaml",
+                   island + "    radio: zep:0\n    motes: [{id: 2, target: 'machine:x'}]\n")
+        self.refused(("run", plan), "rubric: mote11_2: the machine has no flaw 'x'")
 
     def test_a_base_station_comes_back_to_its_sink(self):
         place = socket.create_server(("127.0.0.1", 0))
@@ -502,18 +478,11 @@ islands:
                 (("base-station", "--island", "11", "--home-assistant"),
                  "--home-assistant: needs a space at a broker"),
                 (("robot",), "expected mote, sink, base-station, proxy or FILE.yaml")):
-            run = subprocess.run([RUBRIC, "run", *arguments], capture_output=True, check=False,
-                                 text=True, stdin=subprocess.DEVNULL)
-            self.assertEqual(run.returncode, 64, run.stderr)
-            self.assertIn(text, run.stderr)
-        taken = socket.create_server(("127.0.0.1", 0))
-        port = taken.getsockname()[1]
-        run = subprocess.run([RUBRIC, "run", "sink", "--island", "11", "--radio", "zep:0",
-                              "--serial", f"sf-server:{port}"], capture_output=True, check=False,
-                             text=True)
-        taken.close()
-        self.assertEqual(run.returncode, 66)
-        self.assertIn(f"port {port}: Address already in use", run.stderr)
+            self.refused(("run", *arguments), text)
+        with socket.create_server(("127.0.0.1", 0)) as taken:
+            port = taken.getsockname()[1]
+            self.refused(("run", "sink", "--island", "11", "--radio", "zep:0", "--serial",
+                          f"sf-server:{port}"), f"port {port}: Address already in use", 66)
 
     def test_two_motes_of_one_id_and_a_wrong_call(self):
         one = self.started("mote", "--id", "5", "--radio", "zep:0", "--app", "-")

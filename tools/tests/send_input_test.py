@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """`rubric send`: input that is wrong, lines that cannot be had, and serial forwarders.
 
-Usage: send_input_test.py RUBRIC PROJECT_FOLDER. The forwarders are this test's.
+Usage: send_input_test.py RUBRIC. The forwarders are this test's.
 """
 
 import json
@@ -11,10 +11,11 @@ import threading
 import time
 import unittest
 
-from live_testing import RUBRIC, lines_of
+from live_testing import lines_of
 from send_testing import (CLEAN, INPUT, LONG_MS, NOT_SENT, USAGE, Base, config, confirms, line,
                           send)
 from serial_testing import ACK, PACKET_NOACK, PATIENCE_S, hdlc
+from testing import rubric
 
 
 class Input(Base):
@@ -35,13 +36,11 @@ class Input(Base):
         radio = lines_of("spec/captures/firmware/a_join_data.pcapng", "--filter",
                          "framing==radio", "--count", "1")[0]
         broken = hdlc(b"\x45" + config(1)).replace(config(1)[-2:], config(2)[-2:])
-        malformed = json.loads(subprocess.run(
-            [RUBRIC, "decode", "--format", "jsonl", "--input-format", "hdlc"], input=broken,
-            capture_output=True, check=False).stdout)
+        malformed = json.loads(rubric("decode", "--format", "jsonl", "--input-format", "hdlc",
+                                      stdin=broken)[1])
         long = {"schema": "rubric.decode/1", "framing": "sf", "raw": "00" * 253}
-        path = self.folder / "odd.jsonl"
-        path.write_text("".join(json.dumps(row) + "\n" for row in (radio, malformed, long)),
-                        encoding="utf-8")
+        path = self.write("odd.jsonl", "".join(json.dumps(row) + "\n"
+                                               for row in (radio, malformed, long)))
         code, out, err = send(path, "--to", to)
         self.assertEqual((code, out), (INPUT, ""))
         self.assertIn(f"rubric: {path}:1: expected a serial packet, given a radio frame\n", err)

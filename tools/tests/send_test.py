@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """`rubric send` on serial lines: bytes on the wire, output, and results of packets.
 
-Usage: send_test.py RUBRIC PROJECT_FOLDER. The other ends are motes of this test's, on pseudo
+Usage: send_test.py RUBRIC. The other ends are motes of this test's, on pseudo
 terminals and sockets.
 """
 
@@ -15,10 +15,11 @@ import threading
 import time
 import unittest
 
-from live_testing import RUBRIC, Mote, lines_of
+from live_testing import Mote, lines_of
 from send_testing import (CLEAN, LONG_MS, NOT_SENT, OUTPUT, Base, config, confirms, line,
                           send)
-from serial_testing import ACK, PACKET_ACK, PACKET_NOACK, PATIENCE_S, Pty, hdlc
+from serial_testing import ACK, PACKET_ACK, PACKET_NOACK, PATIENCE_S, Pty, hdlc, wait_for
+from testing import rubric
 
 DEMO = "spec/captures/basestation/s04_acks.from_sink.sfstream"
 
@@ -194,9 +195,7 @@ class Serial(Base):
                                "--keep-going", stdin=subprocess.PIPE)
         running.process.stdin.write((line(1) + line(2)).encode())
         running.process.stdin.close()
-        deadline = time.monotonic() + PATIENCE_S
-        while not mote.packets and time.monotonic() < deadline:
-            time.sleep(0.01)
+        wait_for(lambda: mote.packets, "a packet comes")
         code, out, err = running.end(signal.SIGTERM)
         self.assertEqual(code, NOT_SENT)
         self.assertIn("not confirmed after 1 try", out)
@@ -218,13 +217,10 @@ class Serial(Base):
     def test_what_was_decoded_is_sent_again(self):
         """Sends a capture of both directions, whose confirmations are no packets."""
         to, mote = self.mote(confirms)
-        path = self.folder / "run.jsonl"
         rows = lines_of(DEMO)[:20]
-        ack = {**json.loads(subprocess.run([RUBRIC, "decode", "--format", "jsonl",
-                                            "--input-format", "hdlc"], input=hdlc(b"\x43\x05"),
-                                           capture_output=True, check=True).stdout)}
-        path.write_text("".join(json.dumps(row) + "\n" for row in [ack, *rows, ack]),
-                        encoding="utf-8")
+        ack = json.loads(rubric("decode", "--format", "jsonl", "--input-format", "hdlc",
+                                stdin=hdlc(b"\x43\x05"))[1])
+        path = self.write("run.jsonl", "".join(json.dumps(row) + "\n" for row in [ack, *rows, ack]))
         code, out, err = send(path, "--to", to, "--timeout", LONG_MS)
         self.assertEqual(code, CLEAN, err)
         self.assertEqual(err, f"rubric: {len(rows)} packets, {len(rows)} confirmed, 2 frames "

@@ -1,14 +1,13 @@
 """Helpers of the tests of `rubric send`: packets, and their receivers."""
 
 import json
-import os
 import socket
 import struct
-import subprocess
 import threading
 
-from live_testing import RUBRIC, Forwarder, LiveTest, Mote
+from live_testing import Forwarder, LiveTest, Mote
 from serial_testing import ACK, PATIENCE_S, Pty, hdlc
+from testing import rubric
 
 CLEAN, USAGE, INPUT, NOT_SENT, OUTPUT = 0, 64, 66, 3, 74
 LONG_MS = 60_000  # Never over while somebody answers.
@@ -28,10 +27,7 @@ def confirms(_, seq, __):
 
 def send(*arguments, text="", env=None):
     """Exit code, stdout, stderr."""
-    done = subprocess.run([RUBRIC, "send", *map(str, arguments)], input=text, text=True,
-                          capture_output=True, check=False, env={**os.environ, **(env or {})},
-                          timeout=3 * PATIENCE_S)
-    return done.returncode, done.stdout, done.stderr
+    return rubric("send", *arguments, stdin=text, env=env)
 
 
 class Base(LiveTest):

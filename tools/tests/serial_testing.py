@@ -64,6 +64,18 @@ def wait_for(holds, what):
         time.sleep(0.02)
 
 
+def read_until(fd, enough, got=b""):
+    """Reads until `enough` holds of all bytes, or none come. Returns them, and whether it holds."""
+    deadline = time.monotonic() + PATIENCE_S
+    while not enough(got):
+        ready = select.select([fd], [], [], max(0, deadline - time.monotonic()))[0]
+        more = os.read(fd, 1 << 16) if ready else b""
+        if not more:
+            return got, False
+        got += more
+    return got, True
+
+
 def holds(process, path):
     """Returns whether it has the file open."""
     folder = pathlib.Path(f"/proc/{process.pid}/fd")

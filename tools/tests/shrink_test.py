@@ -5,7 +5,7 @@ import sys
 import tempfile
 import unittest
 
-from testing import ROOT, Folder, rubric as run
+from testing import ROOT, Folder, ProgramTest, rubric as run
 
 MACHINE = sys.argv.pop(1)
 CASE = ROOT / "conformance/cases/j4.rtr"
@@ -78,38 +78,28 @@ class Shrink(Folder):
             self.assertEqual(code, 0, out + err)
 
     def test_profile(self):
-        code, out, err = run("shrink", str(ROOT / "conformance/cases/j8.rtr"), "--target",
-                             "machine", "--profile", "deployed", "--case", "j8.at_most_five")
-        self.assertEqual(code, 0, err)
-        self.assertIn("[J8-LIMIT", out)
+        self.shows(("shrink", str(ROOT / "conformance/cases/j8.rtr"), "--target", "machine",
+                    "--profile", "deployed", "--case", "j8.at_most_five"), "[J8-LIMIT")
 
     def test_a_seed_is_in_what_is_made(self):
         with moody() as target:
             self.assertEqual(run("shrink", CASE, "--target", target)[0], 3)
-            code, out, err = run("shrink", CASE, "--target", target, "--seed", "7")
-            self.assertEqual(code, 0, err)
-            self.assertIn("%seed 7\n", out)
+            self.shows(("shrink", CASE, "--target", target, "--seed", "7"), "%seed 7\n")
 
     def test_an_adapter_that_says_yes_to_everything(self):
         """It passes what nobody can pass: what it does otherwise says nothing."""
-        liar = self.folder / "liar.py"
-        liar.write_text(LIAR, encoding="utf-8")
+        liar = self.write("liar.py", LIAR)
         target = f"{sys.executable} {liar}"
         for words in [("shrink", CASE, "--target", target),
                       ("diff", "--target", "machine", "--target", target, "--cases", "j4.*")]:
-            code, out, err = run(*words)
-            self.assertEqual((code, out), (2, ""), err)
-            self.assertIn(f"rubric {words[0]}: {target}: canary.mote has to fail", err)
+            self.refused(words, f"rubric {words[0]}: {target}: canary.mote has to fail", 2)
 
     def test_nothing_to_shrink(self):
-        code, _, err = run("shrink", CASE, "--target", "machine")
-        self.assertEqual(code, 3)
-        self.assertIn("nothing fails", err)
+        self.refused(("shrink", CASE, "--target", "machine"), "nothing fails", 3)
 
     def test_unknown_case(self):
-        code, _, err = run("shrink", CASE, "--target", "machine", "--case", "j4.no")
-        self.assertEqual(code, 64)
-        self.assertIn("has no case j4.no", err)
+        self.refused(("shrink", CASE, "--target", "machine", "--case", "j4.no"),
+                     "has no case j4.no")
 
     def test_unreadable(self):
         code, _, err = run("shrink", "nowhere.rtr", "--target", "machine")
@@ -120,28 +110,20 @@ class Shrink(Folder):
         self.assertEqual(code, 2, err)
 
 
-class Diff(unittest.TestCase):
+class Diff(ProgramTest):
     def test_a_seed(self):
         with moody() as target:
             words = ["diff", "--target", "machine", "--target", target, "--cases", "j4.*"]
             self.assertEqual(run(*words)[0], 0)
-            code, out, err = run(*words, "--seed", "7")
-            self.assertEqual(code, 1, err)
-            self.assertIn("%seed 7\n", out)
+            self.shows((*words, "--seed", "7"), "%seed 7\n", code=1)
 
     def test_a_mutant_and_the_machine(self):
-        code, out, err = run("diff", "--target", "machine", "--target", BROKEN,
-                             "--rule", "J4")
-        self.assertEqual(code, 1, err)
-        self.assertIn(".difference", out)
-        self.assertIn("; A, ", out)
-        self.assertIn("; B, ", out)
+        self.shows(("diff", "--target", "machine", "--target", BROKEN, "--rule", "J4"),
+                   ".difference", "; A, ", "; B, ", code=1)
 
     def test_the_profiles(self):
-        code, out, err = run("diff", "--target", "machine", "--target", "machine", "--profile",
-                             "paper", "--profile", "deployed", "--rule", "J8")
-        self.assertEqual(code, 1, err)
-        self.assertIn("J8", out)
+        self.shows(("diff", "--target", "machine", "--target", "machine", "--profile", "paper",
+                    "--profile", "deployed", "--rule", "J8"), "J8", code=1)
 
     def test_a_target_and_itself(self):
         code, out, err = run("diff", "--target", "machine", "--target", MACHINE, "--cases", "j*")
@@ -154,9 +136,7 @@ class Diff(unittest.TestCase):
         self.assertEqual(code, 0, err)
 
     def test_one_target_is_not_enough(self):
-        code, _, err = run("diff", "--target", "machine")
-        self.assertEqual(code, 64)
-        self.assertIn("twice", err)
+        self.refused(("diff", "--target", "machine"), "twice")
 
 
 if __name__ == "__main__":

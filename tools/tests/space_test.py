@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The tuple space, as subscribers of a real broker see it, and what comes from others there.
 
-Usage: space_test.py RUBRIC PROJECT_FOLDER MOSQUITTO. All of it on this host's loopback.
+Usage: space_test.py RUBRIC MOSQUITTO. All of it on this host's loopback.
 """
 
 import contextlib
@@ -19,11 +19,13 @@ import unittest
 
 import jsonschema
 
-BROKER = sys.argv.pop(3)
+BROKER = sys.argv.pop(2)
 
-from live_testing import RUBRIC, ROOT, LiveTest  # noqa: E402 pylint: disable=wrong-import-position
+from live_testing import LiveTest  # noqa: E402 pylint: disable=wrong-import-position
 from run_test import KNOCK, Node  # noqa: E402 pylint: disable=wrong-import-position
-from serial_testing import PATIENCE_S, held_port  # noqa: E402 pylint: disable=wrong-import-position
+# pylint: disable-next=wrong-import-position
+from serial_testing import PATIENCE_S, held_port, wait_for  # noqa: E402
+from testing import ROOT, rubric  # noqa: E402 pylint: disable=wrong-import-position
 
 SCHEMA = json.loads((ROOT / "spec/space/schema.json").read_text(encoding="utf-8"))
 KINDS = {r"rubicon/\d+/availability": "island", r"rubicon/(\d+|all)/net": "net",
@@ -143,12 +145,9 @@ class Broker:
     def start(self):
         self.process = subprocess.Popen([BROKER, "-c", self.file], stdout=subprocess.DEVNULL,
                                         stderr=subprocess.DEVNULL)
-        deadline = time.monotonic() + PATIENCE_S
-        while subprocess.run([*self.client("mosquitto_pub"), "-t", "up", "-n"],
-                             capture_output=True, check=False).returncode:
-            if time.monotonic() > deadline:
-                raise AssertionError("no broker")
-            time.sleep(0.05)
+        wait_for(lambda: not subprocess.run([*self.client("mosquitto_pub"), "-t", "up", "-n"],
+                                            capture_output=True, check=False).returncode,
+                 "the broker is there")
 
     def stop(self):
         if self.process:
@@ -336,8 +335,7 @@ islands:
   - {{island: 12, radio: "zep:0", app: python3 {self.folder / "knock.py"}}}
 """, encoding="utf-8")
         subscriber = Subscriber(self, self.broker)
-        users = self.folder / "gate"
-        users.write_text("# ours\nuser=gate\npassword=sesame\n", encoding="utf-8")
+        users = self.write("gate", "# ours\nuser=gate\npassword=sesame\n")
         run = self.started(plan, "--credentials", users, "--log", self.folder / "run.rtr")
         while run.event("received", src="11:5")["data"] != b"DOOR_IS_OPEN".hex():
             pass
@@ -346,9 +344,7 @@ islands:
         code, _, err = run.end()
         self.assertEqual(code, 0, err)
         subscriber.state("rubicon/12/availability", "offline")
-        checked = subprocess.run([RUBRIC, "check", self.folder / "run.rtr"], capture_output=True,
-                                 check=False, text=True)
-        self.assertEqual(checked.returncode, 0, checked.stdout)
+        self.passes(self.folder / "run.rtr")
 
     def test_the_broker_goes_and_comes(self):
         self.broker.stop()
@@ -387,13 +383,11 @@ islands:
                                         "RUBRIC_MQTT_PASSWORD": "simsim"})
         self.assertRegex(base.waits_for(rb"mqtt://\S+: (.*)\n"), "not authori[sz]ed")
         self.assertEqual(base.end()[0], 0)
-        wrong = self.folder / "wrong"
-        wrong.write_text("user=gate\npasswort=sesame\n", encoding="utf-8")
-        run = subprocess.run([RUBRIC, "run", *sink, "--credentials", wrong], capture_output=True,
-                             check=False, text=True)
-        self.assertEqual(run.returncode, 64)
-        self.assertIn(f"{wrong}:2: expected user=, password=", run.stderr)
-        self.assertNotIn("sesame", run.stderr)
+        wrong = self.write("wrong", "user=gate\npasswort=sesame\n")
+        code, _, err = rubric("run", *sink, "--credentials", wrong)
+        self.assertEqual(code, 64)
+        self.assertIn(f"{wrong}:2: expected user=, password=", err)
+        self.assertNotIn("sesame", err)
 
     def test_tls(self):
         certificates(self.folder)
@@ -441,11 +435,8 @@ islands:
         for text, wrong in ((secret + "cert=/none\n", "gate:4: /none cannot be read"),
                             (secret + own.split("\n")[0], "cert= and key= belong together")):
             users.write_text(text, encoding="utf-8")
-            run = subprocess.run([RUBRIC, "run", "base-station", "--island", "12", "--space",
-                                  self.broker.url, "--credentials", users], capture_output=True,
-                                 check=False, text=True)
-            self.assertEqual(run.returncode, 64)
-            self.assertIn(wrong, run.stderr)
+            self.refused(("run", "base-station", "--island", 12, "--space", self.broker.url,
+                          "--credentials", users), wrong)
 
     def test_two_base_stations_of_an_island(self):
         subscriber = Subscriber(self, self.broker, "rubicon/11/availability")

@@ -12,7 +12,7 @@ import resource
 import tempfile
 import unittest
 
-from testing import Folder, run, sanitized
+from testing import Folder, ProgramTest, run, sanitized
 
 BLINK = "00 FF FF 00 00 04 22 06 00 02 00 01"
 BEACON = "00 FF FF 00 00 01 22 06 07"
@@ -76,7 +76,7 @@ def vectors():
     return [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines()]
 
 
-class Shipped(unittest.TestCase):
+class Shipped(ProgramTest):
     def test_every_vector_decodes_and_encodes(self):
         for one in vectors():
             with self.subTest(**one):
@@ -111,9 +111,7 @@ class Shipped(unittest.TestCase):
     def test_what_is_no_spec(self):
         for name, says in [("spec", "'spec' is a folder"), ("README.md", "does not end with .ksy"),
                            ("oscilloscop", "(did you mean 'oscilloscope'?)")]:
-            done = rubric("decode", "--spec", name, stdin=BLINK)
-            self.assertEqual(done.returncode, 64)
-            self.assertIn(says, done.stderr)
+            self.refused(("decode", "--spec", name), says, stdin=BLINK)
 
     def test_generated_frames_decode_as_expected(self):
         for spec in ("blink_to_radio", "ctp", "dissemination", "ftsp", "printf", "none"):
@@ -185,10 +183,9 @@ class Several(Folder):
         return [json.loads(line)["message"] for line in done.stdout.splitlines()]
 
     def lamp(self):
-        file = self.folder / "lamp.ksy"
-        file.write_text("meta: {id: lamp, endian: be}\ntypes:\n  lamp_state:\n    -am-type: 42\n"
-                        "    seq: [{id: lamp, type: u2}, {id: level, type: u1}]\n")
-        return str(file)
+        return str(self.write(
+            "lamp.ksy", "meta: {id: lamp, endian: be}\ntypes:\n  lamp_state:\n    -am-type: 42\n"
+            "    seq: [{id: lamp, type: u2}, {id: level, type: u1}]\n"))
 
     def test_each_message_by_the_first_that_has_its_type(self):
         lines = (self.CTP, BLINK, self.OWN)
@@ -253,9 +250,7 @@ class Several(Folder):
     def test_what_is_none(self):
         for spec, says in [("ctp,rubico", "unknown protocol 'rubico' (did you mean 'rubicon'?)"),
                            ("ctp,spec", "'spec' is a folder")]:
-            done = rubric("decode", "--spec", spec, stdin=BLINK)
-            self.assertEqual((done.returncode, done.stdout), (64, ""))
-            self.assertIn(says, done.stderr)
+            self.refused(("decode", "--spec", spec), says, stdin=BLINK)
         odd = self.folder / "odd.ksy"
         odd.write_text("meta: {id: odd, endian: be}\n-carrier: serial\nseq:\n"
                        "  - {id: head, type: u1}\n  - {id: kind, type: u1}\n"
@@ -267,17 +262,14 @@ class Several(Folder):
                       "another place than ctp", done.stderr)
 
     def test_a_name_with_a_comma_is_a_file_if_there_is_one(self):
-        file = self.folder / "my,own.ksy"
-        file.write_text(PLAIN)
+        file = self.write("my,own.ksy", PLAIN)
         done = rubric("decode", "--spec", str(file), "--as", "pair", stdin="01 00 02\n")
         self.assertIn("a=1 b=2", done.stdout)
 
 
 class File(Folder):
     def file(self, text, name="plain.ksy"):
-        path = self.folder / name
-        path.write_text(text, encoding="utf-8")
-        return str(path)
+        return str(self.write(name, text))
 
     def test_a_file_decodes_like_the_built_in_spec(self):
         for capture in sorted(pathlib.Path("spec/captures/firmware").glob("[gh]*.pcapng")):
@@ -395,10 +387,8 @@ class File(Folder):
         self.assertIn("5:29: error: the size 'length - 2' can be negative", refused.stderr)
 
     def test_text_and_bits_are_refused_for_a_dissector(self):
-        done = rubric("install-wireshark", "--dir", str(self.folder), "--spec",
-                      self.file(TEXTS, "texts.ksy"))
-        self.assertEqual(done.returncode, 66)
-        self.assertIn("rubric --spec reads text", done.stderr)
+        self.refused(("install-wireshark", "--dir", str(self.folder), "--spec",
+                      self.file(TEXTS, "texts.ksy")), "rubric --spec reads text", 66)
 
     def test_imports_beside_the_file_win_over_shipped_ones(self):
         shipped = pathlib.Path("spec/wire/run_time/blink_to_radio.ksy").read_text(encoding="utf-8")
@@ -492,9 +482,8 @@ class File(Folder):
         names = re.findall(r'^  \{name = "(\w+)", carriers', dissector, re.M)
         usual = int(re.search(r"usual_protocol = (\d+)", dissector)[1])
         self.assertEqual(names[usual - 1], "my_blink")
-        done = rubric("install-wireshark", "--dir", str(self.folder), "--spec", self.file(PLAIN))
-        self.assertEqual(done.returncode, 66)
-        self.assertIn("no packet leads to its messages", done.stderr)
+        self.refused(("install-wireshark", "--dir", str(self.folder), "--spec", self.file(PLAIN)),
+                     "no packet leads to its messages", 66)
 
 
 if __name__ == "__main__":

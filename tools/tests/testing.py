@@ -24,6 +24,14 @@ def run(*words, env=None, **how):
     return subprocess.run([RUBRIC, *map(str, words)], env={**os.environ, **(env or {})}, **how)
 
 
+def run_unread(*words):
+    """Runs the program with a closed pipe as its stdout."""
+    read, write = os.pipe()
+    os.close(read)
+    with os.fdopen(write, "wb") as out:
+        return run(*words, capture_output=False, stdout=out, stderr=subprocess.PIPE)
+
+
 def sanitized():
     """Whether the program was built with sanitizers, which map terabytes without using them."""
     return b"__ubsan_handle" in pathlib.Path(RUBRIC).read_bytes()
@@ -54,10 +62,34 @@ def on_terminal(*words, env, width=0):
     return process.returncode, out
 
 
-class Folder(unittest.TestCase):
+class ProgramTest(unittest.TestCase):
+    """Tests of what the program says."""
+
+    def shows(self, words, *texts, code=0, **how):
+        """The program ends with that exit code and shows these texts. Returns its output."""
+        got, out, err = rubric(*words, **how)
+        self.assertEqual(got, code, (words, out, err))
+        for text in texts:
+            self.assertIn(text, out)
+        return out
+
+    def refused(self, words, says, code=64, **how):
+        """The program ends with that exit code, without output, and says this among its errors."""
+        got, out, err = rubric(*words, **how)
+        self.assertEqual((got, out), (code, ""), (words, err))
+        self.assertIn(says, err)
+
+
+class Folder(ProgramTest):
     """Tests with a folder of their own."""
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory(prefix="rubric-")
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
+
+    def write(self, name, content):
+        """Returns the path of a new file of this text, or of these bytes, in the folder."""
+        path = self.folder / name
+        path.write_bytes(content if isinstance(content, bytes) else content.encode())
+        return path

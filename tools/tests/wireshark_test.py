@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Wireshark's dissector against `rubric decode`: every field of every packet, its place and value.
 
-Usage: wireshark_test.py RUBRIC PROJECT_FOLDER. Needs tshark.
+Usage: wireshark_test.py RUBRIC. Needs tshark.
 """
 
 import json
@@ -11,12 +11,10 @@ import re
 import struct
 import subprocess
 import sys
-import tempfile
 import unittest
 
-RUBRIC = ""
-ROOT = pathlib.Path()
-FIRMWARE = pathlib.Path("spec/captures/firmware")
+from testing import FIRMWARE, ROOT, RUBRIC, Folder
+
 # Fields that the dissector adds; not bytes of a field.
 ADDED = {"rubric.am_type", "rubric.path", "rubric.message", "rubric.fault", "rubric.fault_offset",
          "rubric.rule", "rubric.stale", "rubric.note", "rubric.malformed"}
@@ -137,16 +135,12 @@ def same_value(kind, data, said, wanted):
     return int(said, 0) == wanted
 
 
-class Dissector(unittest.TestCase):
+class Dissector(Folder):
     maxDiff = 3000
     script = None  # The one that ships.
 
-    def setUp(self):
-        self.folder = tempfile.TemporaryDirectory(prefix="rubric-wireshark-")
-        self.addCleanup(self.folder.cleanup)
-
     def pcapng(self, source, *arguments):
-        target = pathlib.Path(self.folder.name) / (pathlib.Path(source).name + ".pcapng")
+        target = self.folder / (pathlib.Path(source).name + ".pcapng")
         done = run(RUBRIC, "convert", source, "-o", target, *arguments)
         self.assertEqual(done.returncode, 0, done.stderr)
         return target
@@ -234,7 +228,7 @@ class Dissector(unittest.TestCase):
         self.assertGreater(compared, 10000)
 
     def generated(self, form, *arguments):
-        path = pathlib.Path(self.folder.name) / f"generated.{form}"
+        path = self.folder / f"generated.{form}"
         done = run(RUBRIC, "generate", "--count", "2000", "--seed", "1", "--valid", "0.6",
                    "--format", form, "-o", path, *arguments)
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -250,7 +244,7 @@ class Dissector(unittest.TestCase):
 
     def test_generated_radio_frames(self):
         """The same on the air, all of them in the PAN that is decoded."""
-        path = pathlib.Path(self.folder.name) / "radio.pcap"
+        path = self.folder / "radio.pcap"
         frames = [json.loads(line) for line in
                   run(RUBRIC, "decode", self.generated("pcapng"), "--format", "jsonl")
                   .stdout.splitlines()]
@@ -329,8 +323,7 @@ class Dissector(unittest.TestCase):
                              ('"tinyos.am_header"] = {\n  name = "am_header", max = 8',
                               '"tinyos.am_header"] = {\n  name = "am_header", max = 7')):
             self.assertIn(right, text)
-            copy = pathlib.Path(self.folder.name) / "wrong.lua"
-            copy.write_text(text.replace(right, wrong), encoding="utf-8")
+            copy = self.write("wrong.lua", text.replace(right, wrong))
             check = Dissector("compare_one")
             check.script = copy
             result = unittest.TestResult()
@@ -349,6 +342,4 @@ class Dissector(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    ROOT = pathlib.Path(sys.argv.pop(2))
-    RUBRIC = sys.argv.pop(1)
     unittest.main()

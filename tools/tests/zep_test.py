@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Radio frames over ZEP: `zep:PORT` as a line in use, and what Wireshark reads.
 
-Usage: zep_test.py RUBRIC PROJECT_FOLDER. All of it on this host's loopback, bounded in time.
+Usage: zep_test.py RUBRIC. All of it on this host's loopback, bounded in time.
 """
 
 import json
@@ -14,21 +14,12 @@ import subprocess
 import time
 import unittest
 
-from live_testing import RUBRIC, LiveTest, lines_of
+from packets import fcs, interface, ipv4, packet_block, section, udp
+from live_testing import LiveTest, lines_of
 from serial_testing import PATIENCE_S
 
 RADIO = "spec/captures/firmware/g2_stray_reply_while_joining.pcapng"
 NTP_TO_1970 = 2_208_988_800
-
-
-def fcs(data):
-    """IEEE 802.15.4-2006, section 7.2.1.9, bit by bit."""
-    crc = 0
-    for byte in data:
-        for bit in range(8):
-            feedback = (crc ^ byte >> bit) & 1
-            crc = crc >> 1 ^ (0x8408 if feedback else 0)
-    return struct.pack("<H", crc)
 
 
 def zep(frame, number=1, device=2):
@@ -115,23 +106,14 @@ class Zep(LiveTest):
 
     def test_a_serial_line_is_wanted_where_packets_are_sent(self):
         for command in (("forward", "zep:17754"), ("send", "--to", "zep:17754")):
-            run = subprocess.run([RUBRIC, *command], input=b"", capture_output=True, check=False)
-            self.assertEqual(run.returncode, 64)
-            self.assertIn(b"expected serial@DEVICE:BAUD", run.stderr)
-        run = subprocess.run([RUBRIC, "decode", "zep:x"], capture_output=True, check=False)
-        self.assertEqual(run.returncode, 64)
-        self.assertIn(b"expected zep:PORT", run.stderr)
+            self.refused(command, "expected serial@DEVICE:BAUD")
+        self.refused(("decode", "zep:x"), "expected zep:PORT")
 
     @unittest.skipUnless(shutil.which("tshark"), "no tshark")
     def test_wireshark_reads_the_same(self):
         frame = radio_frames()[0][0]
-        udp = zep(frame + fcs(frame), 0x01020304, 0x0102)
-        packet = struct.pack(">HHHH", 40000, 17754, 8 + len(udp), 0) + udp
-        packet = struct.pack(">BBHHHBBH4s4s", 0x45, 0, 20 + len(packet), 0, 0, 64, 17, 0,
-                             b"\x7f\0\0\1", b"\x7f\0\0\1") + packet
-        path = self.folder / "zep.pcap"
-        path.write_bytes(struct.pack("<IHHIIII", 0xA1B2C3D4, 2, 4, 0, 0, 65535, 101)
-                         + struct.pack("<IIII", 0, 0, len(packet), len(packet)) + packet)
+        packet = ipv4(udp(zep(frame + fcs(frame), 0x01020304, 0x0102)))
+        path = self.write("zep.pcapng", section() + interface(101) + packet_block(0, packet))
         run = subprocess.run(["tshark", "-r", path, "-T", "json", "-J", "zep wpan"],
                              capture_output=True, check=True)
         layers = json.loads(run.stdout)[0]["_source"]["layers"]

@@ -9,14 +9,7 @@
 namespace rubric {
 namespace {
 
-using testing::from_hex;
-using testing::Kept;
-using testing::kSound;
-using testing::read_all;
-using testing::read_file;
-using testing::read_split;
-using testing::to_hex;
-using testing::view;
+using namespace testing;
 
 // Builds files by hand, in either byte order.
 struct File {

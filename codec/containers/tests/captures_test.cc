@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <filesystem>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -15,13 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-using testing::from_hex;
-using testing::Kept;
-using testing::read_all;
-using testing::read_file;
-using testing::read_split;
-using testing::to_hex;
-using testing::view;
+using namespace testing;
 
 const char* const kFirmware = "spec/captures/firmware";
 const char* const kBaseStation = "spec/captures/basestation";

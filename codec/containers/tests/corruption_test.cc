@@ -17,11 +17,7 @@
 namespace rubric {
 namespace {
 
-using testing::from_hex;
-using testing::Kept;
-using testing::read_all;
-using testing::read_file;
-using testing::read_split;
+using namespace testing;
 
 // Returns the frames of all firmware captures, flags included, from their lists.
 std::vector<std::string> captured_frames() {

@@ -14,13 +14,7 @@
 namespace rubric {
 namespace {
 
-using testing::from_hex;
-using testing::Kept;
-using testing::kSound;
-using testing::read_all;
-using testing::read_split;
-using testing::to_hex;
-using testing::view;
+using namespace testing;
 
 struct Row {
   std::uint64_t offset;

@@ -6,11 +6,7 @@
 namespace rubric {
 namespace {
 
-using testing::Kept;
-using testing::read_all;
-using testing::read_file;
-using testing::read_split;
-using testing::view;
+using namespace testing;
 
 const InputFormat kFormats[] = {InputFormat::kHdlc,   InputFormat::kSf,  InputFormat::kPcap,
                                 InputFormat::kPcapng, InputFormat::kHex, InputFormat::kLog};

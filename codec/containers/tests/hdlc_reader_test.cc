@@ -10,14 +10,7 @@
 namespace rubric {
 namespace {
 
-using testing::from_hex;
-using testing::Kept;
-using testing::kPaths;
-using testing::kSound;
-using testing::read_all;
-using testing::read_split;
-using testing::to_hex;
-using testing::view;
+using namespace testing;
 
 struct Expected {
   std::uint64_t offset;

@@ -13,11 +13,7 @@
 namespace rubric {
 namespace {
 
-using testing::from_hex;
-using testing::Kept;
-using testing::kSound;
-using testing::read_all;
-using testing::view;
+using namespace testing;
 
 const std::string kTap = from_hex("0000 0c00 0000 0100 01000000");  // 16-bit FCS.
 

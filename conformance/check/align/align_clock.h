@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <string>
-#include <vector>
 
 #include "conformance/check/align/align.h"
 #include "conformance/check/align/align_frames.h"

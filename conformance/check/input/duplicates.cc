@@ -1,7 +1,6 @@
 #include "conformance/check/input/duplicates.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <map>
 #include <vector>
 

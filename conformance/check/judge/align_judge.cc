@@ -13,8 +13,8 @@
 #include "conformance/check/align/align_logs.h"
 #include "conformance/check/input/read.h"
 #include "conformance/check/judge/findings.h"
-#include "conformance/check/judge/judge.h"
 #include "conformance/check/judge/judge_pass.h"
+#include "conformance/check/observation.h"
 
 namespace rubric::check {
 namespace {

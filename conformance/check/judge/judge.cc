@@ -1,9 +1,6 @@
-#include "conformance/check/judge/judge.h"
-
-#include <algorithm>
-
 #include "conformance/check/judge/judge_pass.h"
 #include "conformance/check/links.h"
+#include "conformance/check/observation.h"
 #include "conformance/machine/transport.h"
 
 namespace rubric::check {

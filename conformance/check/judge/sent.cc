@@ -9,7 +9,6 @@ namespace {
 using machine::Link;
 using machine::Role;
 using machine::Route;
-using rubicon::Component;
 
 constexpr std::int64_t kAtOnceUs = 50'000;
 constexpr std::int64_t kCallUs = 50'000;  // What send accepted is in its buffer then.

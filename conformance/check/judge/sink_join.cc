@@ -1,7 +1,6 @@
 #include "conformance/check/judge/sink_join.h"
 
 #include <algorithm>
-#include <cstdlib>
 
 #include "conformance/check/links.h"
 

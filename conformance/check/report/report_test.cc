@@ -3,12 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "conformance/check/input/read.h"
 #include "conformance/check/report/chart.h"
 #include "conformance/check/report/json.h"
 #include "conformance/check/report/junit.h"
 #include "conformance/check/report/text.h"
 #include "conformance/check/report/words.h"
+#include "conformance/check/tests/must_read.h"
 
 namespace rubric::report {
 namespace {
@@ -58,12 +58,7 @@ check::Run run_of(std::uint64_t frames) {
   return run;
 }
 
-check::Run capture() {
-  std::string error;
-  auto run = check::read({kCapture}, error);
-  EXPECT_TRUE(run) << error;
-  return *run;
-}
+check::Run capture() { return check::must_read({kCapture}); }
 
 KnownFailures expecting(const std::string& text) { return parse_expectations(text, "known.yaml"); }
 

@@ -9,7 +9,7 @@
 
 #include "codec/containers/reader.h"
 #include "conformance/check/input/read.h"
-#include "conformance/check/judge/judge.h"
+#include "conformance/check/observation.h"
 #include "conformance/check/tests/failures.h"
 #include "conformance/simulate/recorder.h"
 #include "conformance/simulate/scenarios.h"

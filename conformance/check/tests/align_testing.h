@@ -20,7 +20,8 @@
 #include "codec/containers/writer.h"
 #include "codec/reflect/requirements.h"
 #include "conformance/check/input/read.h"
-#include "conformance/check/judge/judge.h"
+#include "conformance/check/observation.h"
+#include "conformance/check/tests/must_read.h"
 
 namespace rubric::check {
 
@@ -130,12 +131,7 @@ inline Run put_together(const Apart& apart, const AlignOptions& options = {}) {
   for (const Part& part : apart.parts) reader.add_bytes(part.name, part.bytes, error);
   return reader.finish();
 }
-inline Run whole_run(const Apart& apart) {
-  RunReader reader;
-  std::string error;
-  reader.add_bytes("whole", apart.whole, error);
-  return reader.finish();
-}
+inline Run whole_run(const Apart& apart) { return must_read("whole", apart.whole); }
 
 /// Returns findings as "N6-FORWARD fail 17 sink of island 11", with frame numbers of the whole.
 inline std::multiset<std::string> findings_of(const Report& report, const Apart* apart,

@@ -4,20 +4,14 @@
 #include <gtest/gtest.h>
 
 #include "conformance/check/input/read.h"
-#include "conformance/check/judge/judge.h"
+#include "conformance/check/observation.h"
+#include "conformance/check/tests/must_read.h"
 
 namespace rubric::check {
 namespace {
 
 const std::string kFirmware = "spec/captures/firmware/";
 const std::string kReliable = kFirmware + "b_reliable.pcapng";
-
-check::Run must_read(const std::vector<std::string>& files) {
-  std::string error;
-  std::optional<check::Run> run = read(files, error);
-  EXPECT_TRUE(run) << error;
-  return run ? std::move(*run) : check::Run{};
-}
 
 std::string error_of(check::Run& run) {
   std::string error;

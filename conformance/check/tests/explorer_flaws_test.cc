@@ -7,8 +7,8 @@
 #include <string>
 
 #include "codec/reflect/requirements.h"
-#include "conformance/check/input/read.h"
-#include "conformance/check/judge/judge.h"
+#include "conformance/check/observation.h"
+#include "conformance/check/tests/must_read.h"
 #include "conformance/explore/counterexample.h"
 #include "conformance/explore/search.h"
 #include "conformance/generated/profiles.h"
@@ -55,13 +55,10 @@ std::string text_of(const Report& report) {
 }
 
 Report judge_text(const std::string& text) {
-  RunReader reader;
-  std::string error;
-  EXPECT_TRUE(reader.add_bytes("counterexample.rtr", text, error)) << error;
   Options options;
   options.sniffer_complete = options.start_cold = true;
   options.ack_timeout_us = machine::us_of(machine::Profile{}.ack_timeout_ticks);  // That of all.
-  return judge(reader.finish(), options);
+  return judge(must_read("counterexample.rtr", text), options);
 }
 
 // Expects the shortest trace to fail by a rule that the flaw breaks.

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "codec/reflect/requirements.h"
-#include "conformance/check/judge/judge.h"
+#include "conformance/check/observation.h"
 
 namespace rubric::check {
 

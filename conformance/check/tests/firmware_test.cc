@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <fstream>
-#include <map>
 #include <set>
 #include <sstream>
 #include <string>
@@ -12,7 +11,8 @@
 
 #include "codec/reflect/requirements.h"
 #include "conformance/check/input/read.h"
-#include "conformance/check/judge/judge.h"
+#include "conformance/check/observation.h"
+#include "conformance/check/tests/must_read.h"
 
 namespace rubric::check {
 namespace {
@@ -100,10 +100,8 @@ TEST(Firmware, FindingsAreExactlyThoseListed) {
 }
 
 TEST(Firmware, HypothesesExplainAFailure) {
-  std::string error;
-  const auto run = read({"spec/captures/firmware/g2_stray_reply_while_joining.pcapng"}, error);
-  ASSERT_TRUE(run) << error;
-  const Report report = judge(*run, Options{});
+  const check::Run run = must_read({"spec/captures/firmware/g2_stray_reply_while_joining.pcapng"});
+  const Report report = judge(run, Options{});
   const auto fail = std::find_if(report.findings.begin(), report.findings.end(),
                                  [](const auto& f) { return f.severity == Severity::kFail; });
   ASSERT_NE(fail, report.findings.end());
@@ -119,11 +117,9 @@ TEST(Firmware, RawSerialBytesPass) {
   for (const char* capture : kCaptures) {
     const std::string path = std::string("spec/captures/firmware/") + capture + ".serial.bin";
     if (!std::ifstream(path)) continue;
-    std::string error;
-    const auto run = read({path}, error);
-    ASSERT_TRUE(run) << error;
-    EXPECT_FALSE(run->has_time);
-    for (const Finding& finding : judge(*run, Options{}).findings) {
+    const check::Run run = must_read({path});
+    EXPECT_FALSE(run.has_time);
+    for (const Finding& finding : judge(run, Options{}).findings) {
       EXPECT_LT(finding.severity, Severity::kFail) << path << ": " << finding.text;
     }
   }

@@ -18,7 +18,7 @@
 
 #include "codec/containers/reader.h"
 #include "codec/reflect/requirements.h"
-#include "conformance/check/judge/judge.h"
+#include "conformance/check/observation.h"
 #include "conformance/check/tests/frames_testing.h"
 #include "conformance/check/tests/lawful_testing.h"
 #include "conformance/selftest/lawful_traffic/generate.h"

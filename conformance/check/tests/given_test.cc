@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "conformance/check/identify/identity.h"
-#include "conformance/check/input/read.h"
-#include "conformance/check/judge/judge.h"
+#include "conformance/check/observation.h"
+#include "conformance/check/tests/must_read.h"
 #include "conformance/check/tests/testing.h"
 
 namespace rubric::check {
@@ -20,10 +20,7 @@ Options with(std::vector<KnownNode> nodes) {
 }
 
 check::Run capture(const std::string& name) {
-  std::string error;
-  auto run = read({"spec/captures/firmware/" + name + ".pcapng"}, error);
-  EXPECT_TRUE(run) << error;
-  return run ? std::move(*run) : check::Run{};
+  return must_read({"spec/captures/firmware/" + name + ".pcapng"});
 }
 
 std::vector<std::string> names_of(const check::Run& run, const Options& options) {
@@ -193,10 +190,7 @@ case log
    @1000 m2 > rA am=2->1 join_request(seq_num=5 mote_type=1 transducers=1 actuators=1)
    @2000 sA > rA am=1->2 join_reply(island_addr=11 mote_addr=2 seq_num=5 cur_time=2)
 )";
-  RunReader reader;
-  std::string error;
-  ASSERT_TRUE(reader.add_bytes("log", kLog, error)) << error;
-  const check::Run run = reader.finish();
+  const check::Run run = must_read("log", kLog);
   EXPECT_TRUE(doubts(judge(run, with({{1, Role::kSink, 11}, {2, Role::kMote}}))).empty());
   const std::vector<Finding> island = doubts(judge(run, with({{1, Role::kSink, 12}})));
   ASSERT_EQ(island.size(), 1U);

@@ -1,7 +1,5 @@
 // One fault at a time in a run that is right: its rule must find it, and nothing else may be
 // blamed.
-#include "conformance/check/judge/judge.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -10,6 +8,7 @@
 
 #include "codec/reflect/requirements.h"
 #include "conformance/check/judge/findings.h"
+#include "conformance/check/observation.h"
 #include "conformance/check/tests/failures.h"
 #include "conformance/check/tests/testing.h"
 

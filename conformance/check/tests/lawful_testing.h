@@ -1,7 +1,7 @@
 // Options under which tests judge lawful traffic.
 #pragma once
 
-#include "conformance/check/judge/judge.h"
+#include "conformance/check/observation.h"
 #include "conformance/check/tests/frames_testing.h"
 #include "conformance/selftest/lawful_traffic/traffic.h"
 

@@ -7,10 +7,10 @@
 #include <utility>
 
 #include "codec/reflect/requirements.h"
-#include "conformance/check/input/read.h"
-#include "conformance/check/judge/judge.h"
+#include "conformance/check/observation.h"
 #include "conformance/check/tests/frames_testing.h"
 #include "conformance/check/tests/lawful_testing.h"
+#include "conformance/check/tests/must_read.h"
 #include "conformance/selftest/lawful_traffic/generate.h"
 #include "conformance/selftest/lawful_traffic/recorder.h"
 #include "conformance/selftest/lawful_traffic/variants.h"
@@ -31,10 +31,7 @@ struct Count {
 
 void judge_one(const lawful::Traffic& traffic, const std::string& recorder, const Options& options,
                Count& count) {
-  RunReader reader;
-  std::string error;
-  ASSERT_TRUE(reader.add_bytes(traffic.variant, lawful::to_pcapng(traffic), error)) << error;
-  const check::Run run = reader.finish();
+  const check::Run run = must_read(traffic.variant, lawful::to_pcapng(traffic));
   const Report report = judge(run, options);
   ++count.judgements;
   if (count.different) add_frames(run, count.frames);
@@ -119,10 +116,9 @@ TEST(Legal, UnstatedItFails) {
   for (const char* name : {"stated_join_timer", "stated_requests", "stated_busy_channel"}) {
     std::size_t fails = 0;
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-      RunReader reader;
-      std::string error;
-      ASSERT_TRUE(reader.add_bytes(name, lawful::to_pcapng(lawful::generate(name, seed)), error));
-      fails += judge(reader.finish(), {}).verdict == Verdict::kFail;
+      fails +=
+          judge(must_read(name, lawful::to_pcapng(lawful::generate(name, seed))), {}).verdict ==
+          Verdict::kFail;
     }
     EXPECT_GT(fails, 0U) << name;
   }

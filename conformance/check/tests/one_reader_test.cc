@@ -8,7 +8,6 @@
 #include <filesystem>
 #include <map>
 #include <memory>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -28,8 +27,8 @@
 #include "codec/reflect/frame.h"
 #include "conformance/check/input/read.h"
 #include "conformance/check/input/read_packet.h"
-#include "conformance/check/judge/judge.h"
 #include "conformance/check/message.h"
+#include "conformance/check/observation.h"
 #include "conformance/check/storage.h"
 #include "conformance/machine/transport.h"
 

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "conformance/check/tests/must_read.h"
 #include "conformance/check/tests/testing_log.h"
 
 namespace rubric::check {
@@ -166,11 +167,9 @@ case log
 }
 
 TEST(Owed, NoAckOfANodeThatMayBeOutside) {
-  RunReader reader;
-  std::string error;
   const std::string later = mote(3000, "< app get_clock()");
-  ASSERT_TRUE(reader.add_bytes("log", kMote + to_mote(true) + later, error)) << error;
-  for (const Finding& finding : judge(reader.finish(), {}).findings) {
+  for (const Finding& finding :
+       judge(must_read("log", kMote + to_mote(true) + later), {}).findings) {
     EXPECT_LT(finding.severity, Severity::kFail) << finding.text;
   }
   EXPECT_EQ(of_mote(kJoins + to_mote(true) + kDelivers), "T2-ACK");

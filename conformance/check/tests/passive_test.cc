@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "codec/reflect/requirements.h"
-#include "conformance/check/judge/judge.h"
+#include "conformance/check/observation.h"
 #include "conformance/check/tests/testing.h"
 
 namespace rubric::check::passive_test {

@@ -13,20 +13,14 @@
 
 #include "codec/runtime/hdlc.h"
 #include "conformance/check/identify/identity.h"
-#include "conformance/check/judge/judge.h"
 #include "conformance/check/message.h"
+#include "conformance/check/observation.h"
+#include "conformance/check/tests/must_read.h"
 
 namespace rubric::check::read_test {
 namespace {
 
 constexpr const char* kFirmware = "spec/captures/firmware/";
-
-check::Run must_read(const std::vector<std::string>& files) {
-  std::string error;
-  std::optional<check::Run> run = read(files, error);
-  EXPECT_TRUE(run) << error;
-  return run ? std::move(*run) : check::Run{};
-}
 
 TEST(Read, TapsAndNumbersOfACapture) {
   const check::Run run = must_read({std::string(kFirmware) + "c_two_islands.pcapng"});
@@ -130,11 +124,8 @@ TEST(Read, FilesOfOneRunShareTheirClock) {
 }
 
 TEST(Read, AMessageWithoutBytesMayComeFirst) {
-  RunReader reader;
-  std::string error;
   const std::string_view stream("\x55\x20\x08\x00\xff\xff\x00\x00\x00\x00\x02", 11);
-  ASSERT_TRUE(reader.add_bytes("stream", stream, error)) << error;
-  const check::Run run = reader.finish();
+  const check::Run run = must_read("stream", stream);
   ASSERT_EQ(run.seen.size(), 1U);
   EXPECT_TRUE(run.seen[0].frame.payload.empty());
 }
@@ -158,10 +149,7 @@ case log
    @1000 m2 > rA am=2->1 join_request(seq_num=5 mote_type=1 transducers=1 actuators=1)
    @200000 m2 > rA am=2->1 join_request(seq_num=5 mote_type=1 transducers=1 actuators=1)
 )";
-  RunReader reader;
-  std::string error;
-  ASSERT_TRUE(reader.add_bytes("log", kLog, error)) << error;
-  const check::Run run = reader.finish();
+  const check::Run run = must_read("log", kLog);
   Options options;
   options.start_cold = true;
   const Report report = judge(run, options);

@@ -8,10 +8,10 @@
 #include <utility>
 
 #include "codec/reflect/requirements.h"
-#include "conformance/check/input/read.h"
-#include "conformance/check/judge/judge.h"
 #include "conformance/check/judge/watch.h"
+#include "conformance/check/observation.h"
 #include "conformance/check/tests/frames_testing.h"
+#include "conformance/check/tests/must_read.h"
 #include "conformance/simulate/recorder.h"
 #include "conformance/simulate/scenarios.h"
 #include "conformance/simulate/simulation.h"
@@ -31,13 +31,6 @@ struct Count {
   FrameSet frames;
   std::uint64_t fails = 0;
 };
-
-Run run_of(const std::string& name, const std::string& bytes) {
-  RunReader reader;
-  std::string error;
-  EXPECT_TRUE(reader.add_bytes(name, bytes, error)) << error;
-  return reader.finish();
-}
 
 void expect_no_fail(const std::string& name, const Run& run, Count& count) {
   Options options;
@@ -66,8 +59,8 @@ void judge_network(const simulate::Scenario& scenario, const simulate::ScenarioO
                 scenario.name, static_cast<unsigned long long>(how.seed), how.motes, how.sinks,
                 how.loss, how.duplication);
   ++count.networks;
-  expect_no_fail(std::string(name) + " .rtr", run_of(name, trace::print(log.file())), count);
-  Run captured = run_of(name, capture.finish());
+  expect_no_fail(std::string(name) + " .rtr", must_read(name, trace::print(log.file())), count);
+  Run captured = must_read(name, capture.finish());
   add_frames(captured, count.frames);
   expect_no_fail(std::string(name) + " .pcapng", captured, count);
   // A line in use shows only the sink's own frames.
@@ -123,10 +116,7 @@ TEST(Simulated, PartsOfRunsAreJudged) {
     simulate::Simulation simulation(std::move(network), {&capture, &log});
     simulation.run_until(scenario.length_us);
     for (const std::string& bytes : {trace::print(log.file()), capture.finish()}) {
-      RunReader reader;
-      std::string error;
-      ASSERT_TRUE(reader.add_bytes(scenario.name, bytes, error)) << error;
-      const check::Run whole = reader.finish();
+      const check::Run whole = must_read(scenario.name, bytes);
       for (const std::size_t length : {1U, 15U}) {
         for (std::size_t from = 0; from < whole.seen.size(); from += length) {
           check::Run part = whole;
@@ -152,7 +142,7 @@ TEST(Simulated, NoFailureIsReportedWhileARunGrows) {
       simulate::CaptureRecorder capture(network);
       simulate::Simulation simulation(std::move(network), {&capture});
       simulation.run_until(scenario.length_us);
-      grow(scenario.name, run_of(scenario.name, capture.finish()), told);
+      grow(scenario.name, must_read(scenario.name, capture.finish()), told);
     }
   }
   std::printf("%llu found, %llu withdrawn\n", static_cast<unsigned long long>(told.found),

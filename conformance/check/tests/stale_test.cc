@@ -1,8 +1,8 @@
 // Notes of bytes that are no content, and of serial messages without them.
 #include <gtest/gtest.h>
 
-#include "conformance/check/judge/judge.h"
 #include "conformance/check/judge/sizes.h"
+#include "conformance/check/observation.h"
 #include "conformance/check/tests/testing.h"
 
 namespace rubric::check {

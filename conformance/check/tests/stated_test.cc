@@ -2,7 +2,7 @@
 // 125).
 #include <gtest/gtest.h>
 
-#include "conformance/check/judge/judge.h"
+#include "conformance/check/observation.h"
 #include "conformance/check/tests/testing.h"
 
 namespace rubric::check {

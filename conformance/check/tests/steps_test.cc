@@ -8,9 +8,9 @@
 #include <set>
 #include <string>
 
-#include "conformance/check/input/read.h"
-#include "conformance/check/judge/judge.h"
+#include "conformance/check/observation.h"
 #include "conformance/check/tests/failures.h"
+#include "conformance/check/tests/must_read.h"
 #include "conformance/check/tests/testing.h"
 #include "conformance/selftest/lawful_traffic/generate.h"
 
@@ -164,12 +164,7 @@ TEST(Steps, ARealFaultInAStretchWithoutOneIsFound) {
   std::size_t planted = 0;
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
     lawful::Traffic traffic = lawful::generate("usual", seed);
-    const auto run_of = [&] {
-      RunReader reader;
-      std::string error;
-      reader.add_bytes("usual", lawful::to_pcapng(traffic), error);
-      return reader.finish();
-    };
+    const auto run_of = [&] { return must_read("usual", lawful::to_pcapng(traffic)); };
     constexpr std::int64_t kBaseUs = 10'000'000'000;
     for (lawful::LegalPacket& packet : traffic.packets) packet.time_us += kBaseUs;
     // The sink forwards one message twice, in the first half or in the second one.

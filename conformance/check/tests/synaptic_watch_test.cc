@@ -4,8 +4,8 @@
 #include <string>
 
 #include "codec/reflect/requirements.h"
-#include "conformance/check/input/read.h"
-#include "conformance/check/judge/judge.h"
+#include "conformance/check/observation.h"
+#include "conformance/check/tests/must_read.h"
 
 namespace rubric::check::synaptic_watch_test {
 namespace {
@@ -31,10 +31,7 @@ std::string data(int ms, int seq_digit, const std::string& bytes) {
 }
 
 std::string fails(const std::string& log) {
-  RunReader reader;
-  std::string error;
-  EXPECT_TRUE(reader.add_bytes("log", kBegin + log, error)) << error;
-  const check::Run run = reader.finish();
+  const check::Run run = must_read("log", kBegin + log);
   Options options;
   options.start_cold = true;
   std::string out;

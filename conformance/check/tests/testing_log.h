@@ -6,16 +6,13 @@
 #include <string>
 
 #include "codec/reflect/requirements.h"
-#include "conformance/check/input/read.h"
-#include "conformance/check/judge/judge.h"
+#include "conformance/check/observation.h"
+#include "conformance/check/tests/must_read.h"
 
 namespace rubric::check {
 
 inline Report judge_log(const std::string& log, bool sniffer_complete = false) {
-  RunReader reader;
-  std::string error;
-  EXPECT_TRUE(reader.add_bytes("log", log, error)) << error;
-  const check::Run run = reader.finish();
+  const check::Run run = must_read("log", log);
   Options options;
   options.start_cold = true;
   options.sniffer_complete = sniffer_complete;

@@ -3,9 +3,9 @@
 
 #include <set>
 
-#include "conformance/check/input/read.h"
-#include "conformance/check/judge/judge.h"
+#include "conformance/check/observation.h"
 #include "conformance/check/tests/failures.h"
+#include "conformance/check/tests/must_read.h"
 #include "conformance/check/tests/testing.h"
 
 namespace rubric::check::times_test {
@@ -26,22 +26,18 @@ void lose_serial_times(Run& run) {
   merge(run);
 }
 
-std::optional<check::Run> capture(const std::string& name) {
-  std::string error;
-  auto run = read({"spec/captures/firmware/" + name + ".pcapng"}, error);
-  EXPECT_TRUE(run) << error;
-  return run;
+check::Run capture(const std::string& name) {
+  return must_read({"spec/captures/firmware/" + name + ".pcapng"});
 }
 
 TEST(Times, OfOneFileAreJudgedBesideAFileWithoutAny) {
   auto run = capture("a_join_data");
-  ASSERT_TRUE(run);
-  const std::int64_t end_us = run->end_us;
-  lose_serial_times(*run);
-  EXPECT_FALSE(run->has_time);
-  EXPECT_GE(run->end_us, end_us - 1'000'000);
+  const std::int64_t end_us = run.end_us;
+  lose_serial_times(run);
+  EXPECT_FALSE(run.has_time);
+  EXPECT_GE(run.end_us, end_us - 1'000'000);
   bool clock = false;
-  for (const Finding& finding : judge(*run, Options{}).findings) {
+  for (const Finding& finding : judge(run, Options{}).findings) {
     clock = clock || (finding.requirement == "J3-TIME"_rule && finding.severity == Severity::kFail);
   }
   EXPECT_TRUE(clock);
@@ -51,12 +47,11 @@ TEST(Times, NothingFailsByAnUnknownOrder) {
   for (const char* name : kCaptures) {
     for (const bool strict : {false, true}) {
       auto run = capture(name);
-      ASSERT_TRUE(run);
       Options options;
       options.sniffer_complete = options.start_cold = strict;
-      const auto before = failures_of(judge(*run, options));
-      lose_serial_times(*run);
-      for (const std::string& failure : failures_of(judge(*run, options))) {
+      const auto before = failures_of(judge(run, options));
+      lose_serial_times(run);
+      for (const std::string& failure : failures_of(judge(run, options))) {
         EXPECT_TRUE(before.contains(failure)) << name << ": " << failure;
       }
     }

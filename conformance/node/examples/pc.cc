@@ -1,7 +1,6 @@
 // A sink and a mote in one program, over air that loses nothing: the mote joins and asks the sink,
 // reliably, to open a door. Time is virtual.
 #include <cstdio>
-#include <string>
 #include <vector>
 
 #include "conformance/node/node.h"

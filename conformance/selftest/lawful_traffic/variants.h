@@ -3,6 +3,7 @@
 
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "conformance/selftest/lawful_traffic/plan.h"
@@ -35,6 +36,24 @@ std::span<const WithoutVariant> without_variant();
 
 /// Returns one island, a sink, three motes with readings, some messages in every direction.
 Plan common_plan(Random& random);
+
+// Rows of the groups' tables.
+using Configure = void (*)(Plan& plan, Random& random);
+/// Returns a variant that is never part of `mixed`.
+inline Variant alone(std::string_view name, std::string_view summary, std::vector<int> decisions,
+                     Configure configure) {
+  return {name, summary, std::move(decisions), configure};
+}
+/// Returns one that may be part of `mixed`.
+inline Variant mixing(std::string_view name, std::string_view summary, std::vector<int> decisions,
+                      Configure configure) {
+  return {name, summary, std::move(decisions), configure, true};
+}
+/// Returns one that breaks a SHOULD.
+inline Variant weak(std::string_view name, std::string_view summary, std::vector<int> decisions,
+                    Configure configure) {
+  return {name, summary, std::move(decisions), configure, false, Worst::kWeak};
+}
 
 std::vector<Variant> join_variants();
 std::vector<Variant> transport_variants();

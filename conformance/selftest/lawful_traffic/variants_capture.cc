@@ -62,22 +62,16 @@ void serial_only(Plan& plan, Random&) { plan.capture_radio = false; }
 
 std::vector<Variant> capture_variants() {
   return {
-      {"foreign_protocols",
-       "CTP, FTSP and other protocols on the same channel",
-       {},
-       foreign_protocols,
-       true},
-      {"rssi_beacons", "five RSSI anchors", {}, rssi_beacons, true},
-      {"corrupt_frames",
-       "collisions: frames with a wrong FCS, which no node takes",
-       {},
-       corrupt_frames,
-       true},
-      {"lossy", "nodes miss 30 percent of all frames", {}, lossy},
-      {"sniffer_gaps", "the sniffer misses 15 percent of the frames", {}, sniffer_gaps, true},
-      {"starts_in_middle", "the capture begins when the network runs", {}, starts_in_middle},
-      {"radio_only", "a sniffer's capture alone", {}, radio_only},
-      {"serial_only", "a capture of the serial line alone", {}, serial_only},
+      mixing("foreign_protocols", "CTP, FTSP and other protocols on the same channel", {},
+             foreign_protocols),
+      mixing("rssi_beacons", "five RSSI anchors", {}, rssi_beacons),
+      mixing("corrupt_frames", "collisions: frames with a wrong FCS, which no node takes", {},
+             corrupt_frames),
+      alone("lossy", "nodes miss 30 percent of all frames", {}, lossy),
+      mixing("sniffer_gaps", "the sniffer misses 15 percent of the frames", {}, sniffer_gaps),
+      alone("starts_in_middle", "the capture begins when the network runs", {}, starts_in_middle),
+      alone("radio_only", "a sniffer's capture alone", {}, radio_only),
+      alone("serial_only", "a capture of the serial line alone", {}, serial_only),
   };
 }
 

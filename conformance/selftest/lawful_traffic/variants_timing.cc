@@ -85,54 +85,35 @@ void stated_busy_channel(Plan& plan, Random&) {
   plan.foreign_chats = false;
 }
 
+// Returns a variant that is legal only with these parameters stated.
+Variant stated(std::string_view name, std::string_view summary, std::vector<int> decisions,
+               Configure configure, std::string_view parameters) {
+  return {name, summary, std::move(decisions), configure, false, Worst::kPass, parameters};
+}
+
 }  // namespace
 
 std::vector<Variant> timing_variants() {
   return {
-      {"slow", "nodes take up to 240 ms to react", {125}, slow},
-      {"timers_slow", "clocks that are slow by two percent", {128}, timers_slow},
-      {"timers_fast", "clocks that are fast by up to 3.5 percent", {128}, timers_fast},
-      {"timers_real_ms", "the join timer counts real milliseconds", {128}, timers_real_ms, true},
-      {"clock_skew", "clocks differ by up to 0.4 percent", {119}, clock_skew, true},
-      {"cur_time_binary", "cur_time counts binary milliseconds", {119}, cur_time_binary, true},
-      {"cur_time_wraps", "cur_time steps over its 32 bits", {119}, cur_time_wraps},
-      {"cur_time_uptime", "the sink has been up for long", {119}, cur_time_uptime, true},
-      {"busy_channel", "channel access takes up to 28 ms", {128}, busy_channel, true},
-      {"stated_join_timer",
-       "a join timer of 300 ticks, as stated",
-       {133},
-       stated_join_timer,
-       false,
-       Worst::kPass,
-       "join_period=300"},
-      {"stated_slow_join_timer",
-       "a join timer of 1024 ticks, as stated",
-       {133},
-       stated_slow_join_timer,
-       false,
-       Worst::kPass,
-       "join_period=1024"},
-      {"stated_requests",
-       "eight requests of one call, as stated",
-       {101},
-       stated_requests,
-       false,
-       Worst::kPass,
-       "join_requests=8"},
-      {"stated_slow",
-       "nodes take 340 to 380 ms to react, as stated",
-       {125, 133},
-       stated_slow,
-       false,
-       Worst::kPass,
-       "response=450 join_period=1024 ack_timeout=3072"},
-      {"stated_busy_channel",
-       "channel access takes up to 90 ms, as stated",
-       {128},
-       stated_busy_channel,
-       false,
-       Worst::kPass,
-       "channel_access=95"},
+      alone("slow", "nodes take up to 240 ms to react", {125}, slow),
+      alone("timers_slow", "clocks that are slow by two percent", {128}, timers_slow),
+      alone("timers_fast", "clocks that are fast by up to 3.5 percent", {128}, timers_fast),
+      mixing("timers_real_ms", "the join timer counts real milliseconds", {128}, timers_real_ms),
+      mixing("clock_skew", "clocks differ by up to 0.4 percent", {119}, clock_skew),
+      mixing("cur_time_binary", "cur_time counts binary milliseconds", {119}, cur_time_binary),
+      alone("cur_time_wraps", "cur_time steps over its 32 bits", {119}, cur_time_wraps),
+      mixing("cur_time_uptime", "the sink has been up for long", {119}, cur_time_uptime),
+      mixing("busy_channel", "channel access takes up to 28 ms", {128}, busy_channel),
+      stated("stated_join_timer", "a join timer of 300 ticks, as stated", {133}, stated_join_timer,
+             "join_period=300"),
+      stated("stated_slow_join_timer", "a join timer of 1024 ticks, as stated", {133},
+             stated_slow_join_timer, "join_period=1024"),
+      stated("stated_requests", "eight requests of one call, as stated", {101}, stated_requests,
+             "join_requests=8"),
+      stated("stated_slow", "nodes take 340 to 380 ms to react, as stated", {125, 133}, stated_slow,
+             "response=450 join_period=1024 ack_timeout=3072"),
+      stated("stated_busy_channel", "channel access takes up to 90 ms, as stated", {128},
+             stated_busy_channel, "channel_access=95"),
   };
 }
 

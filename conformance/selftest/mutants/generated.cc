@@ -1,5 +1,4 @@
 #include <map>
-#include <memory>
 #include <set>
 
 #include "conformance/selftest/mutants/fields.h"

@@ -386,82 +386,45 @@ StepMaker backing_off(std::uint32_t seed, Ticks most) {
 std::vector<LegalVariant> stated_variants() {
   const auto is_reply = [](const Frame& frame) { return frame.type == am::kJoinReply; };
   std::vector<LegalVariant> out;
-  out.push_back({"ack_timeout_2000",
-                 "The ack timeout takes 2000 ticks (110).",
-                 always(as_stated),
-                 false,
-                 {{ParameterId::kAckTimeout, 2000}}});
-  out.push_back({"ack_timeout_700",
-                 "The ack timeout takes 700 ticks (110).",
-                 always(as_stated),
-                 false,
-                 {{ParameterId::kAckTimeout, 700}}});
-  out.push_back({"join_period_1024",
-                 "A second from one join_request to the next (133).",
-                 always(as_stated),
-                 false,
-                 {{ParameterId::kJoinPeriod, 1024}}});
-  out.push_back({"join_period_400",
-                 "A shorter join timer (133).",
-                 always(as_stated),
-                 false,
-                 {{ParameterId::kJoinPeriod, 400}}});
-  out.push_back({"chooses_for_350",
-                 "Chooses among offers for 350 ticks (125).",
-                 late(350, is_reply),
-                 false,
-                 {{ParameterId::kResponse, 350}}});
-  out.push_back({"response_450",
-                 "All answers take 440 ticks (125).",
-                 late(440),
-                 true,
-                 {{ParameterId::kResponse, 450}}});
-  out.push_back({"response_100",
-                 "All answers take 90 ticks (125).",
-                 late(90),
-                 true,
-                 {{ParameterId::kResponse, 100}}});
-  out.push_back({"values_late",
-                 "Synaptic data count 440 ticks after they came (125).",
-                 remembering<std::vector<LateValues>>(values_late),
-                 false,
-                 {{ParameterId::kResponse, 450}}});
-  out.push_back({"synaptic_period_1000",
-                 "A synaptic clock of a second (133).",
-                 always(as_stated),
-                 false,
-                 {{ParameterId::kSynapticPeriod, 1000}}});
-  out.push_back({"synaptic_period_400",
-                 "A faster synaptic clock (133).",
-                 always(as_stated),
-                 false,
-                 {{ParameterId::kSynapticPeriod, 400}}});
-  out.push_back({"synaptic_phase_150",
-                 "Motes tick further apart (121).",
-                 always(as_stated),
-                 false,
-                 {{ParameterId::kSynapticPhase, 150}}});
-  out.push_back({"backs_off",
-                 "TinyOS's random back-off of up to 10 ms before a frame (128).",
-                 backing_off(1, 10),
-                 false,
-                 {{ParameterId::kChannelAccess, 30}}});
-  out.push_back(
-      {"backs_off_as_long_as_stated",
-       "Each frame of a burst needs 30 ticks for the channel, those of the next none (128).",
-       remembering<Bursts>(waits_every_second_time),
-       false,
-       {{ParameterId::kChannelAccess, 30}}});
-  out.push_back({"all_stated",
-                 "Everything at once (110, 121, 125, 128, 133).",
-                 late_and_backing_off(330, 20),
-                 true,
-                 {{ParameterId::kResponse, 350},
-                  {ParameterId::kJoinPeriod, 1024},
-                  {ParameterId::kAckTimeout, 2500},
-                  {ParameterId::kChannelAccess, 60},
-                  {ParameterId::kSynapticPeriod, 800},
-                  {ParameterId::kSynapticPhase, 40}}});
+  const auto add = [&](std::string name, std::string reading, StepMaker step,
+                       trace::Statement stated, bool weak = false) {
+    out.push_back({std::move(name), std::move(reading), std::move(step), weak, std::move(stated)});
+  };
+  add("ack_timeout_2000", "The ack timeout takes 2000 ticks (110).", always(as_stated),
+      {{ParameterId::kAckTimeout, 2000}});
+  add("ack_timeout_700", "The ack timeout takes 700 ticks (110).", always(as_stated),
+      {{ParameterId::kAckTimeout, 700}});
+  add("join_period_1024", "A second from one join_request to the next (133).", always(as_stated),
+      {{ParameterId::kJoinPeriod, 1024}});
+  add("join_period_400", "A shorter join timer (133).", always(as_stated),
+      {{ParameterId::kJoinPeriod, 400}});
+  add("chooses_for_350", "Chooses among offers for 350 ticks (125).", late(350, is_reply),
+      {{ParameterId::kResponse, 350}});
+  add("response_450", "All answers take 440 ticks (125).", late(440),
+      {{ParameterId::kResponse, 450}}, true);
+  add("response_100", "All answers take 90 ticks (125).", late(90), {{ParameterId::kResponse, 100}},
+      true);
+  add("values_late", "Synaptic data count 440 ticks after they came (125).",
+      remembering<std::vector<LateValues>>(values_late), {{ParameterId::kResponse, 450}});
+  add("synaptic_period_1000", "A synaptic clock of a second (133).", always(as_stated),
+      {{ParameterId::kSynapticPeriod, 1000}});
+  add("synaptic_period_400", "A faster synaptic clock (133).", always(as_stated),
+      {{ParameterId::kSynapticPeriod, 400}});
+  add("synaptic_phase_150", "Motes tick further apart (121).", always(as_stated),
+      {{ParameterId::kSynapticPhase, 150}});
+  add("backs_off", "TinyOS's random back-off of up to 10 ms before a frame (128).",
+      backing_off(1, 10), {{ParameterId::kChannelAccess, 30}});
+  add("backs_off_as_long_as_stated",
+      "Each frame of a burst needs 30 ticks for the channel, those of the next none (128).",
+      remembering<Bursts>(waits_every_second_time), {{ParameterId::kChannelAccess, 30}});
+  add("all_stated", "Everything at once (110, 121, 125, 128, 133).", late_and_backing_off(330, 20),
+      {{ParameterId::kResponse, 350},
+       {ParameterId::kJoinPeriod, 1024},
+       {ParameterId::kAckTimeout, 2500},
+       {ParameterId::kChannelAccess, 60},
+       {ParameterId::kSynapticPeriod, 800},
+       {ParameterId::kSynapticPhase, 40}},
+      true);
   return out;
 }
 

@@ -2,7 +2,6 @@
 // must find every one of them.
 #pragma once
 
-#include <functional>
 #include <string>
 #include <utility>
 #include <vector>

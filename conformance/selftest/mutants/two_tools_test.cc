@@ -34,7 +34,7 @@
 
 #include "codec/reflect/requirements.h"
 #include "conformance/check/input/read.h"
-#include "conformance/check/judge/judge.h"
+#include "conformance/check/observation.h"
 #include "conformance/selftest/mutants/fields.h"
 #include "conformance/selftest/mutants/hunt.h"
 #include "conformance/test/report/case_files.h"

@@ -5,7 +5,6 @@
 #include <concepts>
 #include <deque>
 #include <functional>
-#include <memory>
 #include <type_traits>
 #include <vector>
 

@@ -5,12 +5,10 @@
 #include <algorithm>
 #include <map>
 #include <optional>
-#include <set>
 #include <tuple>
 #include <utility>
 #include <vector>
 
-#include "codec/reflect/fault_text.h"
 #include "codec/reflect/requirements.h"
 #include "codec/text/text.h"
 #include "conformance/test/report/log_lines.h"

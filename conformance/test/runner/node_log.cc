@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <optional>
 
 #include "conformance/generated/profiles.h"
 #include "conformance/test/runner/run_case.h"

@@ -1,10 +1,8 @@
 // An implementation under test on a clock that the runner turns, wherever it runs.
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <stdexcept>
-#include <string>
 #include <vector>
 
 #include "codec/lines/broken.h"

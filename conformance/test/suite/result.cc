@@ -7,7 +7,6 @@
 #include <set>
 #include <string_view>
 
-#include "codec/reflect/fault_text.h"
 #include "codec/reflect/requirements.h"
 #include "codec/text/text.h"
 #include "conformance/trace/trace.h"

@@ -115,6 +115,13 @@ std::string cpp_int(std::int64_t value) {
   return std::to_string(value);
 }
 
+std::string_view infix(ExprOp op) {
+  if (op < ExprOp::kAdd || op > ExprOp::kOr) throw std::logic_error("no operator of two sides");
+  constexpr std::string_view kTexts[] = {
+      "+", "-", "*", "/", "%", "==", "!=", "<", "<=", ">", ">=", "&&", "||"};
+  return kTexts[static_cast<std::size_t>(op) - static_cast<std::size_t>(ExprOp::kAdd)];
+}
+
 std::string cpp_include(std::string_view path) { return fmt::format("#include \"{}\"", path); }
 
 std::string banner(std::string_view comment, std::string_view inputs) {

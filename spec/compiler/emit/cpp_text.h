@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "spec/compiler/model.h"
+
 namespace rubricc {
 
 /// Turns "net_msg" and "NET-MSG" into "NetMsg".
@@ -26,6 +28,11 @@ std::string wrap(const std::vector<std::string>& words, std::size_t indent);
 
 /// Returns an integer literal whose type holds it in C++14: "-1", "4294967295".
 std::string cpp_int(std::int64_t value);
+
+/// Returns an operator of two sides as C++ and Java write it: "<=". Throws std::logic_error for any
+/// other.
+std::string_view infix(ExprOp op);
+inline bool is_arithmetic(ExprOp op) { return op >= ExprOp::kAdd && op <= ExprOp::kMod; }
 
 /// Returns `#include "path"`.
 std::string cpp_include(std::string_view path);

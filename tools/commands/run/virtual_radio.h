@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <functional>
 #include <random>
-#include <string>
 #include <vector>
 
 #include "codec/containers/packet.h"

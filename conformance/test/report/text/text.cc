@@ -30,7 +30,6 @@ using runner::Failure;
 using text::counted;
 using text::wrapped;
 using trace::Line;
-using trace::Op;
 
 // Shows the events around a line that was not kept: the log, and a chart of it.
 

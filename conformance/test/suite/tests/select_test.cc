@@ -7,8 +7,6 @@
 #include <iterator>
 #include <set>
 
-#include "conformance/test/runner/case_files.h"
-
 namespace rubric::suite {
 namespace {
 

@@ -3,7 +3,6 @@
 #include "spec/compiler/emit/cpp/emit_cpp_text.h"
 
 #include <algorithm>
-#include <stdexcept>
 #include <vector>
 
 namespace rubricc::cpp {
@@ -18,27 +17,6 @@ std::string order(const Field& field) {
 std::string enum_class(const Field& field, const Spec& spec) {
   const Enum& e = *field.enumeration;
   return (e.spec != nullptr && e.spec != &spec ? e.spec->id + "::" : "") + pascal(e.id);
-}
-
-bool is_arithmetic(ExprOp op) { return op >= ExprOp::kAdd && op <= ExprOp::kMod; }
-
-const char* text_of(ExprOp op) {
-  switch (op) {
-    case ExprOp::kAdd: return "+";
-    case ExprOp::kSub: return "-";
-    case ExprOp::kMul: return "*";
-    case ExprOp::kDiv: return "/";
-    case ExprOp::kMod: return "%";
-    case ExprOp::kEq: return "==";
-    case ExprOp::kNe: return "!=";
-    case ExprOp::kLt: return "<";
-    case ExprOp::kLe: return "<=";
-    case ExprOp::kGt: return ">";
-    case ExprOp::kGe: return ">=";
-    case ExprOp::kAnd: return "&&";
-    case ExprOp::kOr: return "||";
-    default: throw std::logic_error("emit_cpp: not an operator of two sides");
-  }
 }
 
 bool fits_32_bits(const Expr& expr) {
@@ -67,7 +45,7 @@ std::string print_term(const Expr& expr, const Leaf& leaf, const char* wide) {
   }
   std::string out;
   for (const ExprPtr& side : expr.operands) {
-    if (!out.empty()) out += " " + std::string(text_of(expr.op)) + " ";
+    if (!out.empty()) out += " " + std::string(infix(expr.op)) + " ";
     const std::string text = print_term(*side, leaf, wide);
     const bool atom = side->operands.empty() || side->op == ExprOp::kNot;
     const bool comparison = side->op >= ExprOp::kEq && side->op <= ExprOp::kGe;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <stdexcept>
 
 #include "spec/compiler/emit/cpp_text.h"
 
@@ -33,25 +32,6 @@ bool is_among(const std::array<std::string_view, kCount>& words, std::string_vie
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-bool is_arithmetic(ExprOp op) { return op >= ExprOp::kAdd && op <= ExprOp::kMod; }
-
-const char* text_of(ExprOp op) {
-  switch (op) {
-    case ExprOp::kAdd: return " + ";
-    case ExprOp::kSub: return " - ";
-    case ExprOp::kMul: return " * ";
-    case ExprOp::kEq: return " == ";
-    case ExprOp::kNe: return " != ";
-    case ExprOp::kLt: return " < ";
-    case ExprOp::kLe: return " <= ";
-    case ExprOp::kGt: return " > ";
-    case ExprOp::kGe: return " >= ";
-    case ExprOp::kAnd: return " && ";
-    case ExprOp::kOr: return " || ";
-    default: throw std::logic_error("emit_java: an operator without a text");
-  }
-}
-
 std::string print_term(const Expr& expr, const Leaf& leaf, bool wide) {
   if (expr.op == ExprOp::kInt || expr.op == ExprOp::kEnumValue) {
     return literal(expr.value) + (wide && expr.value <= INT32_MAX ? "L" : "");
@@ -71,7 +51,7 @@ std::string print_term(const Expr& expr, const Leaf& leaf, bool wide) {
     return std::string(expr.op == ExprOp::kDiv ? "Math.floorDiv(" : "Math.floorMod(") + cast +
            print_term(left, leaf, true) + ", " + side(right) + ")";
   }
-  return cast + side(left) + text_of(expr.op) + side(right);
+  return cast + side(left) + " " + std::string(infix(expr.op)) + " " + side(right);
 }
 
 }  // namespace

@@ -58,21 +58,12 @@ std::string load_text(const Expr& expr) {
   return fmt::format("d:{}{}({})", order, 8 * field.width_bytes, expr.offset_bytes);
 }
 
-const char* operator_text(ExprOp op) {
+std::string_view operator_text(ExprOp op) {
   switch (op) {
-    case ExprOp::kAdd: return "+";
-    case ExprOp::kSub: return "-";
-    case ExprOp::kMul: return "*";
-    case ExprOp::kMod: return "%";
-    case ExprOp::kEq: return "==";
     case ExprOp::kNe: return "~=";
-    case ExprOp::kLt: return "<";
-    case ExprOp::kLe: return "<=";
-    case ExprOp::kGt: return ">";
-    case ExprOp::kGe: return ">=";
     case ExprOp::kAnd: return "and";
     case ExprOp::kOr: return "or";
-    default: throw std::logic_error("emit_lua: an operator without a text");
+    default: return infix(op);
   }
 }
 

@@ -1,4 +1,0 @@
-// The checker: judge(), as observation.h declares it.
-#pragma once
-
-#include "conformance/check/observation.h"
