@@ -410,6 +410,9 @@ class Identifier {
       Device& its_sink = out_.devices[sink];
       if (!logs && line.first != kNoIsland && its_sink.island == line.island)
         its_sink.island = line.first;
+      const bool heard = its_sink.radio && its_sink.first_us < line.set_us;
+      const bool told = logs || host != logged_host_.end();  // A log's header says its island.
+      its_sink.set_later = line.set_later && !told && !heard;
       const std::uint16_t said = logs ? out_.devices[sink].island : kNoIsland;
       out_.devices[sink].taps.push_back(tap);
       out_.sink_of_tap[tap] = sink;

@@ -71,6 +71,7 @@ struct Device {
   std::uint16_t am = 0;
   machine::Role role = machine::Role::kMote;
   std::uint16_t island = kNoIsland;  ///< A sink's or base station's first.
+  bool set_later = false;            ///< A sink whose island was set then, and another before.
   bool known = true;                 ///< False: an unknown sender; what it does is a stimulus.
   bool judged = true;        ///< False: the user or a log says that it is no node under test.
   bool application = false;  ///< A log has its application's calls and events.

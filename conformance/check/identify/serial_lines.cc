@@ -22,6 +22,13 @@ std::uint16_t island_of(const Observation& seen, const Net& net, const Streams& 
   return own ? net.src.pid : kNoIsland;
 }
 
+// Returns the island in which the sink itself says that a mote joined; kNoIsland if it does not.
+std::uint16_t reported_island(const Observation& seen, const Net& net) {
+  SerialJoined joined;
+  const bool report = !seen.to_mote && parse_serial_joined(net, joined);
+  return report && joined.address.pid == net.src.pid ? net.src.pid : kNoIsland;
+}
+
 }  // namespace
 
 SerialLines::SerialLines(const Run& run, const Given& given, Streams& streams)
@@ -51,15 +58,23 @@ void SerialLines::look(std::uint32_t index) {
     // It had its given island before, if it was there before.
     if (line.given && (line.used || streams_.has_sink())) show(line.island);
     streams_.rename_island(line.island, island);
-    if (line.first == kNoIsland) line.first = island;
+    if (line.first == kNoIsland) {  // What it was before is not known.
+      line.first = island;
+      line.set_later = line.used;
+      line.set_us = seen.place.time_us;
+    }
+    line.by_host = false;
     show(island);
     return;
   }
   Net net;
   if (seen.frame.type != am::kNet || !parse_net(seen.frame.payload, net)) return;
-  if (line.island == kNoIsland || line.given) {
+  // A host may write under a name that is not its island's; a sink's own reports outrank it.
+  const bool reports = line.by_host && reported_island(seen, net) != kNoIsland;
+  if (line.island == kNoIsland || line.given || reports) {
     if (const std::uint16_t island = island_of(seen, net, streams_); island != kNoIsland) {
       line.first = island;
+      line.by_host = seen.to_mote;
       show(island);
     }
   }

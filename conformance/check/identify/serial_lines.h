@@ -14,6 +14,9 @@ struct SerialLine {
   std::uint16_t first = kNoIsland;
   bool given = false;           ///< By the user; no frame has shown it so far.
   bool used = false;            ///< Some net_msg came.
+  bool by_host = false;         ///< Only what a host wrote down the line shows its island.
+  bool set_later = false;       ///< A SET_ISLAND_ID shows it, and some net_msg came before.
+  std::int64_t set_us = 0;      ///< When that came.
   std::uint32_t last_down = 0;  ///< The last packet to the sink that asked for confirmation, + 1.
 };
 

@@ -20,7 +20,7 @@ Forwarding::Forwarding(Context& context) : context_(context) {
     Line& line = lines_.emplace_back();
     line.sink = static_cast<std::uint16_t>(i);
     line.am = device.am;
-    line.island = device.island;
+    line.island = device.set_later ? kNoIsland : device.island;
     line.serial = device.shows_line();
     line.slack_us = device.whole ? context.response_us() : kIslandSlackUs;
   }

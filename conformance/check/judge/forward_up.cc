@@ -25,7 +25,7 @@ bool begins_with(const Net& serial, const Net& radio) {
 void Forwarding::heard_on_radio(const Observation& seen, std::uint16_t sender, const Net& net,
                                 std::uint16_t surely_received_by) {
   for (Line& line : lines_) {
-    if (line.sink == sender || !line.serial || line.island == kNoIsland) continue;
+    if (line.sink == sender || !line.serial) continue;
     // A sink with a log of what it was given hears nothing else, and hears it in its own order.
     const bool sure = surely_received_by == line.sink;
     if (context_.device(line.sink).hearing ? !sure : seen.received) continue;
@@ -42,12 +42,14 @@ void Forwarding::heard_on_radio(const Observation& seen, std::uint16_t sender, c
     const bool onward = route.onward == Route::Onward::kSerial;
     if (!net.sound) {
       passing.forbidden = "N11-NBYTES"_rule;
+    } else if (line.island == kNoIsland) {
+      // It may be this sink's or not, and be sent up when the island is known.
     } else if (!onward && !route.deliver && net.dest.pid != machine::kBroadcastPid) {
       passing.forbidden = route.requirement;
       passing.weak = route.requirement == "N6-OTHER"_rule;
     }
-    passing.owed = onward && !line.off && !line.deaf && net.sound && net.reliable <= 1 &&
-                   net.src.pid == line.island && sure;
+    passing.owed = onward && line.island != kNoIsland && !line.off && !line.deaf && net.sound &&
+                   net.reliable <= 1 && net.src.pid == line.island && sure;
     line.heard += onward && net.sound && net.src.pid == line.island ? 1 : 0;
     // The message may be on the serial line already, if the two taps' clocks differ.
     bool early = false;

@@ -247,12 +247,12 @@ void Judge::called(const Observation& seen, std::uint16_t device) {
   if (const auto* set = std::get_if<machine::SetInterface>(seen.call)) {
     if (!set->on) acks_.interrupted(device, seen.place.time_us, who_.devices[device].whole);
     originals_.switched(device, *set, seen.place.time_us);
+    synaptic_.able(device, *set, seen.place.time_us);
     if (set->link == machine::Link::kSerial) {
       forwarding_.serial_set(device, set->on);
       announcements_.serial_set(device, set->on, seen.place.time_us);
     } else {
       forwarding_.radio_set(device, set->on);
-      synaptic_.able(device, set->on, seen.place.time_us);
       joins_.radio_set(device, set->on, seen.place.time_us);
       join_calls_.radio_set(device, set->on, seen.place.time_us);
     }
@@ -352,6 +352,7 @@ void Judge::surely(const Observation& seen, const Mark& mark, const Net& net) {
   if (interfaces_.switched_off(mark.receiver, seen.frame.link)) return;
   acks_.surely(mark.receiver, net, seen.place.time_us,
                standing(mark.receiver) != Standing::kOutside, no_room(mark.receiver, net));
+  synaptic_.heard(mark.receiver, seen, net);
   if (seen.kind == Kind::kRadio) synaptic_.given(mark.receiver, seen, net);
   if (net.is_ack()) originals_.ack_given(mark.receiver, net, seen.place.time_us);
   if (seen.kind == Kind::kRadio) {

@@ -115,6 +115,7 @@ void Judge::hears(std::uint16_t node, const machine::Router& router, machine::Li
                  : cut && !straight ? "N11-SHORT"_rule
                                     : route.delivered,
                  no_room(node, net)});
+  if (sure) synaptic_.heard(node, seen, net);
   if (sure && !off && route.deliver) synaptic_.given(node, seen, net, on);
   const bool exact = net.dest == router.own && owed && !straight && !cut && on && !off;
   if (sure && exact && forbidden == ReqId::kNone && context_.options.start_cold) {

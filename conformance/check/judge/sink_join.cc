@@ -25,7 +25,7 @@ SinkJoins::SinkJoins(Context& context) : context_(context) {
     if (device.role != machine::Role::kSink) continue;
     SinkWatch sink;
     sink.device = index;
-    sink.island = device.island;
+    sink.island = device.set_later ? kNoIsland : device.island;
     sinks_.push_back(std::move(sink));
   }
 }

@@ -25,20 +25,70 @@ SynapticWatch::In* SynapticWatch::find_in(Node& node, machine::ChannelId id) {
   return nullptr;
 }
 
+// Returns whether there may be two channels of that id, to peers in two islands.
+bool SynapticWatch::is_twin(const Node& node, machine::ChannelId id) {
+  return std::ranges::find(node.twins, id) != node.twins.end();
+}
+
+// Returns whether a channel of that id may be one from the node to itself, by either name.
+bool SynapticWatch::may_be_local(machine::ChannelId id) {
+  const std::uint16_t from = id >> 16;
+  const std::uint16_t to = id & 0xFFFF;
+  return from == to || from == machine::kLocalDevid || to == machine::kLocalDevid;
+}
+
+// Takes back a call that the model took and the node refused. A mote that is no member may do so;
+// who has room for a channel may not.
+void SynapticWatch::refused(std::uint16_t device, const Observation& seen, const Wanted& wanted) {
+  Node& node = nodes_[device];
+  const Device& its = context_.device(device);
+  const bool outside = its.role == machine::Role::kMote && node.member_us < 0;
+  const auto* const made = std::get_if<machine::ChannelResult>(&wanted.result);
+  const auto odd = [&](const machine::Channel& channel) {
+    return channel.id == made->id &&
+           (machine::is_reserved(channel.peer.pid) || machine::is_reserved(channel.peer.devid));
+  };
+  const bool wrong = made != nullptr && its.whole && node.own.pid != kNoIsland &&
+                     std::ranges::none_of(node.channels.in, odd) &&
+                     std::ranges::none_of(node.channels.out, odd);
+  if (!outside && !wrong) return;
+  if (node.wanted.empty()) {  // It was the last call.
+    node.channels = node.former.channels;
+    node.ins = node.former.ins;
+    node.outs = node.former.outs;
+    node.restart_us = node.former.restart_us;
+    node.shifted = node.former.shifted;
+  }
+  if (outside) return;
+  context_.report(wanted.rule, Severity::kFail, seen.place, device,
+                  {"The call that creates a channel is refused, though there is room.",
+                   "Success, and the id of the channel.",
+                   {}});
+}
+
 // The value that read_input_value tells is not judged: data may have been lost or be on their way.
 void SynapticWatch::told(std::uint16_t device, const Observation& seen,
                          const machine::Notice& result) {
   Node& node = nodes_[device];
-  if (!node.result || node.result->index() != result.index()) return;
-  const machine::Notice want = *std::exchange(node.result, std::nullopt);
-  const ReqId rule = node.result_rule;
+  if (node.wanted.empty() || node.wanted.front().result.index() != result.index()) return;
+  const Wanted wanted = node.wanted.front();
+  node.wanted.erase(node.wanted.begin());
+  const machine::Notice& want = wanted.result;
+  const ReqId rule = wanted.rule;
+  if (!succeeds(want)) return;
+  if (*succeeds(want) && !*succeeds(result)) return refused(device, seen, wanted);
+  const auto* const made = std::get_if<machine::ChannelResult>(&result);
+  if (made != nullptr && made->success && !*succeeds(want)) node.perhaps.push_back(made->id);
+  // Who keeps two channels of one id may: the calls do not say which of them they mean.
+  const auto* const right = std::get_if<machine::ChannelResult>(&want);
+  if (rule == "S1-ID"_rule && right != nullptr && !right->success) {
+    if (*succeeds(result)) node.twins.push_back(right->id);
+    return;
+  }
   // What else a call does is seen by the data; a channel that is not there may be unknown here.
   const bool judged = rule == "S1-ID"_rule || rule == "S1-ENLARGE"_rule ||
                       rule == "S1-LIMIT"_rule || rule == "S1-WRITE"_rule || rule == "S1-READ"_rule;
-  if (!judged || !context_.device(device).whole || !succeeds(want)) return;
-  const auto* const made = std::get_if<machine::ChannelResult>(&result);
-  const auto* const right = std::get_if<machine::ChannelResult>(&want);
-  // Who refuses a channel, as one that is no member may, refuses the calls for it, too.
+  if (!judged || !context_.device(device).whole) return;
   const bool both = *succeeds(want) && *succeeds(result);
   const bool other = both && made != nullptr && made->id != right->id;
   const bool refusable = !*succeeds(want) && *succeeds(result);
@@ -105,7 +155,81 @@ void SynapticWatch::given(std::uint16_t device, const Observation& seen, const N
   in->data_us[at] = seen.place.time_us;
   // Data of a mote of another island is not its peer's; a sink may have peers there.
   const bool its = net.src.pid == net.dest.pid || net.src.devid == context_.sink_am;
-  in->data_sure[at] = sure && (in->peer.pid == machine::kLocalPid ? its : net.src == in->peer);
+  const bool from_peer = in->peer.pid == machine::kLocalPid ? its : net.src == in->peer;
+  in->data_sure[at] = sure && from_peer;
+  in->data_its[at] = from_peer || is_twin(node, in->id);
+}
+
+void SynapticWatch::heard(std::uint16_t device, const Observation& seen, const Net& net) {
+  Node& node = nodes_[device];
+  if (!context_.device(device).whole || net.trans_id != component::kSynChannel) return;
+  const std::int64_t now = seen.place.time_us;
+  const machine::ChannelId id = input_id(device, net);
+  const In* const in = find_in(node, id);
+  // What came for a channel that runs, and from its peer, is soon of no use to anything else.
+  if (in != nullptr && in->begun_us >= 0 && !is_twin(node, id) &&
+      (in->peer.pid == machine::kLocalPid || net.src == in->peer)) {
+    std::erase_if(node.heard, [&](const Heard& one) {
+      return one.id == id && in->begun_us < one.at_us && context_.due_us(device, one.at_us) < now;
+    });
+  }
+  node.forgot_heard = node.forgot_heard || node.heard.size() == kOldsMax;
+  if (!node.forgot_heard) node.heard.push_back({id, now});
+}
+
+// Judges synData_received that says that no channel exists, by a log that has all of the node.
+void SynapticWatch::told_of_unknown(std::uint16_t device, const Observation& seen,
+                                    machine::ChannelId id) {
+  Node& node = nodes_[device];
+  const Device& its = context_.device(device);
+  if (!its.whole || its.role == machine::Role::kBaseStation || node.forgot_heard) return;
+  if (may_be_local(id)) return;
+  const auto one =
+      std::ranges::find_if(node.heard, [&](const Heard& heard) { return heard.id == id; });
+  if (one != node.heard.end()) {
+    node.heard.erase(one);
+    return;
+  }
+  context_.report(
+      "S5-UNKNOWN"_rule, Severity::kFail, seen.place, device,
+      {"synData_received with status unknown, though no data came from " + number(id >> 16) +
+           " to " + number(id & 0xFFFF) + " of which it was not told.",
+       "One for the data of a channel that does not exist.",
+       {}});
+}
+
+// Judges synData_received of a channel that the application did not create.
+void SynapticWatch::told_of_nothing(std::uint16_t device, const Observation& seen,
+                                    machine::ChannelId id) {
+  const Device& its = context_.device(device);
+  const Node& node = nodes_[device];
+  if (!its.whole || its.role == machine::Role::kBaseStation || may_be_local(id)) return;
+  if (node.ins.size() == kChannelsMax || std::ranges::count(node.perhaps, id) != 0) return;
+  context_.report("S6-STOPPED"_rule, Severity::kFail, seen.place, device,
+                  {"synData_received of a channel from " + number(id >> 16) + " to " +
+                       number(id & 0xFFFF) + ", which was not created.",
+                   "Silence.",
+                   {}});
+}
+
+// Returns whether messages that waited with these data may have filled the buffer: those that came
+// by the same interface since a line or the application was busy (decision 122).
+bool SynapticWatch::flooded(std::uint16_t device, const Unknown& one) const {
+  const std::int64_t came_us = one.place.time_us;
+  if (context_.crowded(device, came_us)) return true;
+  const std::vector<Observation>& seen = context_.run.seen;
+  const bool serial = one.link == machine::Link::kSerial;
+  const std::size_t room = serial ? machine::kSerialRoom : machine::kRadioRoom;
+  return std::ranges::any_of(context_.busy_times(device), [&](const BusyTime& busy) {
+    if (busy.from_us > came_us || came_us > busy.to_us + context_.response_us()) return false;
+    std::size_t others = 0;
+    for (std::size_t i = 0; i < seen.size() && seen[i].place.time_us <= came_us; ++i) {
+      const bool its = context_.who.marks[i].receiver == device && seen[i].received;
+      const bool waits = seen[i].place.time_us >= busy.from_us - context_.response_us();
+      if (its && waits && seen[i].frame.link == one.link) ++others;
+    }
+    return others > room;  // These data are one of them.
+  });
 }
 
 void SynapticWatch::owed(std::uint16_t device, const Observation& seen, const Net& net) {
@@ -121,7 +245,7 @@ void SynapticWatch::owed(std::uint16_t device, const Observation& seen, const Ne
   if (in != nullptr && seen.place.time_us - in->ended_us <= context_.early_us()) return;
   const auto copy = [&](const Unknown& one) { return one.id == id && one.seq_num == net.seq_num; };
   if (std::ranges::any_of(node.unknowns, copy)) return;
-  node.unknowns.push_back({id, seen.place, net.seq_num});
+  node.unknowns.push_back({id, seen.place, net.seq_num, seen.frame.link});
 }
 
 // Reports data for channels that do not exist, of which the application was not told by the tick
@@ -135,8 +259,9 @@ void SynapticWatch::settle_unknowns(std::uint16_t device, std::int64_t now_us) {
   for (Unknown& one : node.unknowns) {
     const std::int64_t since = std::max({one.place.time_us, node.step_us, able_us});
     if (one.told || now_us - since <= patience_us(device, false, one.place.time_us)) continue;
-    one.told = true;                                      // Said once.
-    const bool open = node.unknowns.size() > kTickCrowd;  // A buffer may have been full.
+    one.told = true;  // Said once.
+    // A buffer may have been full.
+    const bool open = node.unknowns.size() > kTickCrowd || flooded(device, one);
     context_.report("S5-UNKNOWN"_rule, open ? Severity::kInconclusive : Severity::kFail, one.place,
                     device,
                     {"Data from " + number(one.id >> 16) + " to " + number(one.id & 0xFFFF) +
@@ -154,11 +279,16 @@ void SynapticWatch::told(std::uint16_t device, const Observation& seen,
   if (data.status == machine::DataStatus::kUnknownChannel) {
     settle_unknowns(device, seen.place.time_us);
     for (Unknown& one : node.unknowns) one.told = one.told || one.id == data.id;
+    return told_of_unknown(device, seen, data.id);
   }
   In* const in = find_in(node, data.id);
-  if (in == nullptr || data.status == machine::DataStatus::kUnknownChannel) return;
+  if (in == nullptr) return told_of_nothing(device, seen, data.id);
   const std::int64_t now = seen.place.time_us;
   if (!context_.run.has_time) return;
+  if (is_twin(node, data.id)) {  // Which of the two it is about is not known.
+    in->told_us = in->waits_us = now;
+    return;
+  }
   if (in->ended_us >= 0) {
     if (now - in->ended_us <= context_.early_us()) return;  // It was on its way.
     context_.report("S6-STOPPED"_rule, Severity::kFail, seen.place, device,
@@ -175,12 +305,17 @@ void SynapticWatch::told(std::uint16_t device, const Observation& seen,
   const std::int64_t since = std::max(in->told_us, in->begun_us);
   // Data that came close to a tick may count for this one or the next; a whole log has the order.
   const std::int64_t apart = context_.device(device).whole ? 1 : context_.early_us();
+  // Returns the first of the data that came between two times, and takes them for told if they are.
   const auto came = [&](std::int64_t from, std::int64_t to) {
+    std::int64_t* first = nullptr;
     for (std::size_t i = 0; i < in->data_us.size(); ++i) {
-      const std::int64_t at = in->data_us[i];
-      if (at >= 0 && at >= from && at <= to && (fresh || in->data_sure[i])) return true;
+      std::int64_t& at = in->data_us[i];
+      const bool counts = fresh ? in->data_its[i] : in->data_sure[i];
+      const bool within = at >= 0 && at >= from && at <= to && counts;
+      if (within && (first == nullptr || at < *first)) first = &at;
     }
-    return false;
+    if (first != nullptr && fresh) *first = -1;
+    return first != nullptr;
   };
   if (fresh && in->local && news_of_nothing(node, *in)) {
     context_.report("S3-OLD"_rule, Severity::kFail, seen.place, device,

@@ -14,6 +14,9 @@ const machine::Channel* find(const machine::Synaptic& channels, machine::Channel
   return nullptr;
 }
 
+// Returns whether a node may take two values for the same: 0 and -0 are other bits, but equal.
+bool may_be_same(std::uint32_t a, std::uint32_t b) { return a == b || ((a | b) << 1) == 0; }
+
 constexpr std::int64_t kOnAirUs = 5'000;  // The longest frame on the air, and its link ack.
 constexpr std::size_t kBufferMax = 4;     // And so many channels (decision 122).
 
@@ -54,7 +57,11 @@ SynapticWatch::Out* SynapticWatch::find(Node& node, machine::ChannelId id) {
 
 void SynapticWatch::called(std::uint16_t device, const Observation& seen, machine::Address own) {
   Node& node = nodes_[device];
-  node.result.reset();
+  const std::int64_t now_us = seen.place.time_us;
+  // Only a log that has all of a node surely has each result.
+  std::erase_if(node.wanted, [&](const Wanted& one) {
+    return !context_.device(device).whole || now_us - one.called_us > context_.response_us();
+  });
   const bool creates = std::holds_alternative<machine::CreateChannel>(*seen.call);
   // The clock may be set before there is a channel.
   const bool steps = std::holds_alternative<machine::SetTimeStep>(*seen.call);
@@ -65,7 +72,7 @@ void SynapticWatch::called(std::uint16_t device, const Observation& seen, machin
   if (!node.logged && !steps) return;
   node.own = own;
   if (steps) {
-    node.step_us = seen.place.time_us;
+    node.step_us = now_us;
     node.former_ticks = node.channels.period_ticks;
   }
   machine::Config config;
@@ -75,15 +82,15 @@ void SynapticWatch::called(std::uint16_t device, const Observation& seen, machin
   if (device < context_.run.nodes.size() && context_.run.nodes[device].channels != 0) {
     config.profile.channels_max = context_.run.nodes[device].channels;
   }
-  settle(device, seen.place.time_us);
-  const machine::Synaptic before = node.channels;
+  settle(device, now_us);
+  node.former = {node.channels, node.ins, node.outs, node.restart_us, node.shifted};
+  const machine::Synaptic& before = node.former.channels;
   context_.actions.clear();
-  machine::call_synaptic(node.channels, config, own, machine::ticks_of(seen.place.time_us),
-                         *seen.call, context_.actions);
+  machine::call_synaptic(node.channels, config, own, machine::ticks_of(now_us), *seen.call,
+                         context_.actions);
   for (const machine::Action& action : context_.actions.all()) {
     if (action.what != machine::Action::What::kNotify) continue;
-    node.result = context_.actions.notice_of(action);
-    node.result_rule = action.requirement;
+    node.wanted.push_back({context_.actions.notice_of(action), action.requirement, now_us});
   }
   if (const auto* create = std::get_if<machine::CreateChannel>(seen.call)) {
     const machine::ChannelId id = machine::channel_id(create->peer.devid, config.id);
@@ -92,15 +99,15 @@ void SynapticWatch::called(std::uint16_t device, const Observation& seen, machin
     const bool input = create->direction == machine::Direction::kIn;
     if (input && std::ranges::none_of(node.channels.in, is)) node.perhaps.push_back(id);
   }
-  note(node, before, seen.place.time_us);
+  note(node, before, now_us);
   if (const auto* write = std::get_if<machine::WriteOutput>(seen.call)) {
     Out* const out = find(node, write->id);
     if (out != nullptr && write->pos < machine::kConnectionsMax) {
-      note_old(*out, before, write->pos, seen.place.time_us);
+      note_old(*out, before, write->pos, now_us);
       out->written |= 1U << write->pos;
     }
   }
-  note_inputs(node, before, seen.place.time_us);
+  note_inputs(node, before, now_us);
 }
 
 // Keeps the value before a write, which data that missed their tick may still have.
@@ -152,6 +159,10 @@ void SynapticWatch::note(Node& node, const machine::Synaptic& before, std::int64
     }
     if (old == nullptr || old->value_bits == channel.value_bits) continue;
     out->written_us = out->wrote_us = now_us;
+    // What went and came back between two ticks may be no change (decision 120).
+    if (out->sent_us >= 0 && std::ranges::equal(out->sent_bits, channel.value_bits, may_be_same)) {
+      out->wrote_us = -1;
+    }
   }
   for (const machine::Channel& old : before.out) {
     if (check::find(node.channels, old.id) != nullptr) continue;
@@ -199,15 +210,20 @@ void SynapticWatch::sent(std::uint16_t device, const Observation& seen, const Ne
   if (!node.logged || !seen.place.timed()) return;
   const std::int64_t now = seen.place.time_us;
   Out* const out = find(node, machine::channel_id(net.src.devid, net.dest.devid));
-  if (out == nullptr) return;  // Created before the log began.
+  if (out == nullptr) return sent_of_nothing(device, seen, net);
+  // The calls do not say which of two channels with one id they mean.
+  const machine::Channel* const channel = check::find(node.channels, out->id);
+  const bool twin = is_twin(node, out->id);
+  if (twin && (channel == nullptr || net.dest.pid != channel->peer.pid)) return;
   settle(device, now);
   out->ticks.add(now);
   if (net.src != net.dest) judge_grid(device, seen, out->ticks);
   out->waits_us = now;
-  const machine::Channel* const channel = check::find(node.channels, out->id);
   // A write just before the data may have missed its tick; then they have the values before it.
   bool current = true;
   bool as_written = true;  // A value that nobody wrote is free.
+  // Older data may hold the same.
+  bool again = now <= context_.due_us(device, out->begun_us);
   using Values = rubicon::SynapticDataLayout::ValuesAt;
   for (std::size_t i = 0; channel != nullptr && i < channel->size; ++i) {
     const bool holds = (i + 1) * Values::kUnitBytes <= net.body().size();
@@ -219,10 +235,13 @@ void SynapticWatch::sent(std::uint16_t device, const Observation& seen, const Ne
       return old.pos == i && now <= context_.due_us(device, old.until_us) &&
              (old.unwritten || old.bits == bits);
     });
+    again = again || before;
     as_written = as_written && (same || before || (out->written >> i & 1) == 0);
+    out->sent_bits[i] = bits;
   }
   if (current || out->wrote_us < now - context_.response_us()) out->wrote_us = -1;
   // Data in the outgoing buffer may still leave.
+  if (twin && out->silent_us >= 0) return;
   if (out->silent_us >= 0 && now - out->silent_us > context_.response_us()) {
     context_.report(out->disposed ? "S6-DISPOSED"_rule : "S6-STOPPED"_rule, Severity::kFail,
                     seen.place, device,
@@ -247,7 +266,7 @@ void SynapticWatch::sent(std::uint16_t device, const Observation& seen, const Ne
                          number(channel->size) + ".",
                      "One value for each connection.",
                      {}});
-  } else if (!as_written && now > context_.due_us(device, out->forgot_us)) {
+  } else if (!as_written && !twin && now > context_.due_us(device, out->forgot_us)) {
     context_.report("S2-CONTENT"_rule, Severity::kFail, seen.place, device,
                     {"Data of the channel to " + text_of(net.dest) +
                          " whose values are not those that were written, the last of them " +
@@ -262,8 +281,9 @@ void SynapticWatch::sent(std::uint16_t device, const Observation& seen, const Ne
   node.data_us = now;
   const std::int64_t last_tick_us = std::exchange(out->tick_us, node.tick_us);
   // What had to wait for the channel is nearer to the next.
+  const std::int64_t on_us = out->line == machine::Link::kSerial ? node.serial_on_us : node.on_us;
   const bool steady = out->sent_us >= 0 && node.step_us < out->sent_us &&
-                      (node.on_us == 0 || node.on_us < out->sent_us - context_.response_us()) &&
+                      (on_us == 0 || on_us < out->sent_us - context_.response_us()) &&
                       !context_.busy(device, out->sent_us - context_.response_us(), out->sent_us);
   if (steady && now - last_tick_us < least) {
     context_.report(
@@ -287,9 +307,10 @@ void SynapticWatch::sent(std::uint16_t device, const Observation& seen, const Ne
                   "the data to " + text_of(net.dest));
   }
   const bool saves = channel->mode == machine::Mode::kPowerSave;
-  // A write just before the last data may have missed its tick.
-  const bool changed = out->written_us >= out->sent_us - context_.response_us();
-  if (saves && out->sent_us >= 0 && !changed) {
+  // A write just before the last data may have missed its tick, unless they have it.
+  const std::int64_t missed_us = out->newest ? 0 : context_.response_us();
+  const bool changed = out->written_us >= out->sent_us - missed_us;
+  if (saves && steady && !twin && !changed) {
     context_.report("S3-UNCHANGED"_rule, Severity::kFail, seen.place, device,
                     {"A power-save channel sends although nothing was written for " +
                          ms_text(now - out->written_us) + ".",
@@ -299,6 +320,18 @@ void SynapticWatch::sent(std::uint16_t device, const Observation& seen, const Ne
     context_.findings.kept("S3-UNCHANGED"_rule);
   }
   out->sent_us = now;
+  out->newest = current && !again;
+}
+
+// Judges data of a channel that the application did not create.
+void SynapticWatch::sent_of_nothing(std::uint16_t device, const Observation& seen, const Net& net) {
+  const Device& its = context_.device(device);
+  const Node& node = nodes_[device];
+  if (!its.whole || node.outs.size() == kChannelsMax) return;  // Created before the log began.
+  if (its.role == machine::Role::kBaseStation || net.src.devid != its.am) return;
+  context_.report(
+      "S6-STOPPED"_rule, Severity::kFail, seen.place, device,
+      {"Data to " + text_of(net.dest) + ", to which no channel was created.", "Silence.", {}});
 }
 
 void SynapticWatch::Ticks::add(std::int64_t now_us) {
@@ -311,10 +344,13 @@ void SynapticWatch::member(std::uint16_t device, std::int64_t now_us) {
   nodes_[device].member_us = now_us;
 }
 
-void SynapticWatch::able(std::uint16_t device, bool radio_on, std::int64_t now_us) {
+void SynapticWatch::able(std::uint16_t device, const machine::SetInterface& set,
+                         std::int64_t now_us) {
   settle(device, now_us);
-  nodes_[device].unknowns.clear();
-  nodes_[device].on_us = radio_on ? now_us : -1;
+  Node& node = nodes_[device];
+  std::erase_if(node.unknowns, [&](const Unknown& one) { return one.link == set.link; });
+  const bool serial = set.link == machine::Link::kSerial;
+  (serial ? node.serial_on_us : node.on_us) = set.on ? now_us : -1;
 }
 
 // Returns since when the node has been able to send by `line` or, if there is none, to tell its
@@ -323,7 +359,8 @@ std::int64_t SynapticWatch::able_since(std::uint16_t device, std::int64_t now_us
                                        std::optional<machine::Link> line, bool local) const {
   const Node& node = nodes_[device];
   const bool sink = context_.device(device).role == machine::Role::kSink;
-  const std::int64_t on_us = local ? 0 : node.on_us;
+  const bool serial = line == machine::Link::kSerial;
+  const std::int64_t on_us = local ? 0 : serial ? node.serial_on_us : node.on_us;
   if (!node.logged || !context_.run.has_time || on_us < 0) return -1;
   if (!sink && node.member_us < 0) return -1;
   std::int64_t since = std::max(on_us, sink ? 0 : node.member_us);
@@ -423,7 +460,7 @@ void SynapticWatch::settle_outputs(std::uint16_t device, std::int64_t now_us) {
     if (channel == node.channels.out.end()) continue;
     const bool saves = channel->mode == machine::Mode::kPowerSave;
     const bool first = out.sent_us < out.begun_us;
-    if (saves && !first && out.wrote_us < 0) continue;
+    if (saves && !first && (out.wrote_us < 0 || is_twin(node, out.id))) continue;
     const std::int64_t cause = saves && !first ? out.wrote_us : out.waits_us;
     const std::int64_t since = std::max({cause, able_us, node.step_us, out.begun_us});
     if (now_us - since <= patience_us(device, first, out.sent_us)) continue;
@@ -450,6 +487,7 @@ void SynapticWatch::settle_outputs(std::uint16_t device, std::int64_t now_us) {
     out.waits_us = now_us;
     out.wrote_us = -1;
     if (saves) out.sent_us = now_us;  // Said once.
+    out.newest = false;
   }
 }
 

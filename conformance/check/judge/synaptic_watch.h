@@ -20,8 +20,10 @@ class SynapticWatch {
   void called(std::uint16_t node, const Observation& seen, machine::Address own);
   /// Notes that the mote has joined; until then it sends nothing.
   void member(std::uint16_t node, std::int64_t now_us);
-  /// Notes that its radio is switched on or off.
-  void able(std::uint16_t node, bool radio_on, std::int64_t now_us);
+  /// Notes that one of its interfaces is switched on or off.
+  void able(std::uint16_t node, const machine::SetInterface& set, std::int64_t now_us);
+  /// Notes that by a log it was given a message, whether that was for it or not.
+  void heard(std::uint16_t node, const Observation& seen, const Net& net);
   /// Notes that by a log it was given a message for itself; not `sure`: as its radio went off.
   void given(std::uint16_t node, const Observation& seen, const Net& net, bool sure = true);
   /// Notes that by a log whose start is known data came that are surely for the node, at its
@@ -60,7 +62,9 @@ class SynapticWatch {
     std::int64_t tick_us = -1;     ///< When the data of their tick began to leave.
     std::int64_t written_us = -1;  ///< The last write that changed something.
     std::uint32_t written = 0;     ///< Bit i: connection i was written.
-    std::int64_t silent_us = -1;   ///< When it was stopped or disposed; -1: it runs.
+    std::array<std::uint32_t, machine::kConnectionsMax> sent_bits{};  ///< The last data.
+    bool newest = false;          ///< They surely had every write before them.
+    std::int64_t silent_us = -1;  ///< When it was stopped or disposed; -1: it runs.
     bool disposed = false;
     struct Old {
       std::int64_t until_us = 0;
@@ -80,7 +84,8 @@ class SynapticWatch {
     std::int64_t told_us = -1;   ///< The last synData_received.
     std::int64_t waits_us = -1;  ///< Silence counts from here.
     std::array<std::int64_t, 4> data_us{-1, -1, -1, -1};  ///< The last data that it was given.
-    std::array<bool, 4> data_sure{};                      ///< Whether they surely came in.
+    std::array<bool, 4> data_sure{};  ///< Whether they surely came in, from its peer.
+    std::array<bool, 4> data_its{};   ///< Whether they may be from its peer.
     std::uint8_t data_next = 0;
     bool before = false;  ///< Data came while it did not run; it may count, or not.
     Ticks ticks;
@@ -90,11 +95,34 @@ class SynapticWatch {
     machine::ChannelId id = 0;
     Place place;
     std::uint16_t seq_num = 0;
+    machine::Link link = machine::Link::kRadio;
     bool told = false;
+  };
+  /// Data of which the application has not been told that no channel exists for them.
+  struct Heard {
+    machine::ChannelId id = 0;
+    std::int64_t at_us = 0;
+  };
+  /// What a call has to return, and why.
+  struct Wanted {
+    machine::Notice result;
+    ReqId rule = ReqId::kNone;
+    std::int64_t called_us = 0;
+  };
+  /// What a call that is refused after all has not changed.
+  struct Former {
+    machine::Synaptic channels;
+    std::vector<In> ins;
+    std::vector<Out> outs;
+    std::int64_t restart_us = -1;
+    bool shifted = false;
   };
   struct Node {
     std::vector<Unknown> unknowns;
+    std::vector<Heard> heard;
+    bool forgot_heard = false;                ///< There were more.
     std::vector<machine::ChannelId> perhaps;  ///< Calls that the model refused; who knows.
+    std::vector<machine::ChannelId> twins;    ///< Two channels, to peers in two islands.
     std::int64_t data_us = -1;                ///< The last data of any channel.
     std::int64_t tick_us = -1;                ///< When those of their tick began to leave.
     bool logged = false;                      ///< Its log has the calls that create channels.
@@ -102,12 +130,13 @@ class SynapticWatch {
     std::int64_t settled_us = -1;             ///< What was owed until then is judged.
     std::int64_t member_us = -1;              ///< A mote: joined since; a sink always is.
     std::int64_t on_us = 0;                   ///< Its radio is on since; -1: it is off.
+    std::int64_t serial_on_us = 0;            ///< And its serial line.
     std::int64_t restart_us = -1;             ///< A channel was started while others ran.
     bool shifted = false;                     ///< That shifted the ticks, and was reported.
     std::vector<In> ins;
     machine::Synaptic channels;
-    std::optional<machine::Notice> result;  ///< What the last call has to return, and why.
-    ReqId result_rule = ReqId::kNone;
+    std::vector<Wanted> wanted;      ///< Of calls that have not returned; in order.
+    Former former;                   ///< What there was before the last call.
     std::int64_t step_us = -1;       ///< The last set_time_step.
     std::uint32_t former_ticks = 0;  ///< The period before it, which a tick may end first.
     std::vector<Out> outs;
@@ -116,6 +145,12 @@ class SynapticWatch {
   Out* find(Node& node, machine::ChannelId id);
   machine::ChannelId input_id(std::uint16_t device, const Net& net) const;
   static In* find_in(Node& node, machine::ChannelId id);
+  static bool is_twin(const Node& node, machine::ChannelId id);
+  static bool may_be_local(machine::ChannelId id);
+  void refused(std::uint16_t device, const Observation& seen, const Wanted& wanted);
+  void told_of_unknown(std::uint16_t device, const Observation& seen, machine::ChannelId id);
+  void told_of_nothing(std::uint16_t device, const Observation& seen, machine::ChannelId id);
+  bool flooded(std::uint16_t device, const Unknown& one) const;
   void note_inputs(Node& node, const machine::Synaptic& before, std::int64_t now_us);
   void begin(std::uint16_t device);
   static bool is_local(const Node& node, const machine::Channel& channel);
@@ -128,6 +163,7 @@ class SynapticWatch {
   void settle_unknowns(std::uint16_t device, std::int64_t now_us);
   void settle_outputs(std::uint16_t device, std::int64_t now_us);
   bool crowded(std::uint16_t device, std::int64_t from_us, std::int64_t to_us) const;
+  void sent_of_nothing(std::uint16_t device, const Observation& seen, const Net& net);
   void judge_content(std::uint16_t node, const Observation& seen, const Net& net);
   void judge_grid(std::uint16_t device, const Observation& seen, const Ticks& ticks);
   void note(Node& node, const machine::Synaptic& before, std::int64_t now_us);

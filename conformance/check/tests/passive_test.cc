@@ -211,6 +211,36 @@ TEST(Passive, ALineOfAForwarderLacksItsOtherClientsAndThatIsSaidOnce) {
   EXPECT_EQ(failures_of(script), "");
 }
 
+// Nothing shows of which island the sink was before (decision 126).
+TEST(Passive, WhatASinkDidBeforeItsIslandWasSetIsOpen) {
+  const NetFields away = message({11, 5}, {12, 3}, 51);
+  for (const bool late : {false, true}) {
+    Script script;
+    if (!late) script.net(50, 5, 1, away).up(60, away.forwarded());
+    script.up(70, message({11, 6}, {12, 3}, 52).forwarded());
+    if (late) script.net(4990, 5, 1, away);
+    script.serial(5000, true, am::kConfig, {10, 1, 11}).confirm();
+    if (late) script.up(5010, away.forwarded());
+    script.join(6000, 267, 6, 55);
+    script.net(8000, 6, 1, message({267, 6}, {267, kNullDevid}, 3));
+    script.up(8010, message({267, 6}, {267, kNullDevid}, 3).forwarded());
+    EXPECT_EQ(failures_of(script), "") << late;
+    // From then on it is known.
+    script.net(9000, 5, 1, message({11, 5}, {12, 3}, 53));
+    script.up(9010, message({11, 5}, {12, 3}, 53).forwarded());
+    EXPECT_EQ(failures_of(script), "N6-COLLISION") << late;
+  }
+}
+
+TEST(Passive, WhatASinkReportsOutranksTheNamesThatHostsWrite) {
+  Script script;
+  script.down(50, message({12, kNullDevid}, {12, 7}, 9)).confirm();
+  script.join(100, 11, 5, 300).join(1000, 11, 6, 301);
+  script.net(2000, 5, 1, message({11, 5}, {11, kNullDevid}, 44));
+  script.up(2010, message({11, 5}, {11, kNullDevid}, 44).forwarded());
+  EXPECT_EQ(failures_of(script), "");
+}
+
 TEST(Passive, AReceiverThatDiedIsOneFinding) {
   Script script;
   script.join(0, 11, 2, 100).join(100, 11, 3, 200);
