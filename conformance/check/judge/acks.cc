@@ -45,7 +45,8 @@ void Acks::arrived(std::uint16_t node, const Observation& seen, std::uint16_t se
   arrived.link = seen.frame.link;
   arrived.forbidden = net.sound ? arrival.forbidden : "N11-NBYTES"_rule;
   arrived.weak = net.sound && arrival.weak;
-  arrived.ackable = arrived.forbidden == ReqId::kNone &&
+  arrived.to_self = arrival.to_self;
+  arrived.ackable = arrived.forbidden == ReqId::kNone && arrived.to_self &&
                     machine::must_ack(net.reliable == 1, net.dest, net.trans_id, net.app_id);
   arrived.no_room = arrival.no_room;
   arrived.must_ack = arrived.ackable && !arrival.free && !arrival.no_room;
@@ -57,6 +58,7 @@ void Acks::arrived(std::uint16_t node, const Observation& seen, std::uint16_t se
     arrived.delivers = arrival.delivers;
   }
   arrived.sure = arrival.sure;
+  arrived.came = arrival.came;
   arrived.order = ++orders_[node].came;
   if (arrived.must_ack && arrived.sure) ++owed_[node];
   if (ring.full()) {
@@ -66,14 +68,31 @@ void Acks::arrived(std::uint16_t node, const Observation& seen, std::uint16_t se
   ring.push(arrived);
 }
 
-void Acks::repeated(std::uint16_t node, const Net& net) {
+void Acks::repeated(std::uint16_t node, const Net& net, std::int64_t now_us) {
   Ring<Arrived, kRoom>& ring = arrived_[node];
   for (std::size_t i = 0; i < ring.size(); ++i) {
     Arrived& arrived = ring.newest(i);
     if (!same_message(arrived.net, net)) continue;
     if (arrived.copies < 255) ++arrived.copies;
+    arrived.again_us = now_us;
     return;
   }
+}
+
+void Acks::came(std::uint16_t node, const Net& net) {
+  Ring<Arrived, kRoom>& ring = arrived_[node];
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    if (!same_message(ring.newest(i).net, net)) continue;
+    ring.newest(i).came = true;
+    return;
+  }
+}
+
+// Returns whether by its log the node was not given the message, so that it cannot know it.
+bool Acks::never_came(std::uint16_t node, const Arrived& arrived) const {
+  const Device& device = context_.device(node);
+  return !arrived.came &&
+         (device.whole || (device.hearing && arrived.link == machine::Link::kRadio));
 }
 
 void Acks::surely(std::uint16_t node, const Net& net, std::int64_t now_us, bool may, bool no_room) {
@@ -93,7 +112,8 @@ void Acks::surely(std::uint16_t node, const Net& net, std::int64_t now_us, bool 
     arrived.net = net;  // As it was given, perhaps without the bytes after its content.
     if (may && (arrived.forbidden == "N10-OFF"_rule || arrived.forbidden == "J11-HEAR"_rule)) {
       arrived.forbidden = ReqId::kNone;
-      arrived.ackable = machine::must_ack(net.reliable == 1, net.dest, net.trans_id, net.app_id);
+      arrived.ackable = arrived.to_self &&
+                        machine::must_ack(net.reliable == 1, net.dest, net.trans_id, net.app_id);
     }
     return;
   }
@@ -115,7 +135,7 @@ void Acks::sent(std::uint16_t node, const Observation& seen, const Net& ack) {
     Arrived& arrived = ring.newest(i);
     if (arrived.net.seq_num != acked || arrived.net.src != ack.dest) continue;
     SerialJoined joined;  // It has the mote's address and the sink's number.
-    if (parse_serial_joined(arrived.net, joined)) continue;
+    if (parse_serial_joined(arrived.net, joined) || never_came(node, arrived)) continue;
     if (best == nullptr || rank(arrived) > rank(*best)) best = &arrived;
   }
   if (best == nullptr || rank(*best) < 3) {
@@ -124,7 +144,7 @@ void Acks::sent(std::uint16_t node, const Observation& seen, const Net& ack) {
   }
   if (best->must_ack && best->sure && best->acks == 0) --owed_[node];
   ++best->acks;
-  const std::int64_t took = now - best->whole_us;
+  const std::int64_t took = now - std::max(best->whole_us, best->again_us);
   // What is acked did arrive, perhaps later. What surely came at once was acked late, which passes.
   if (best->must_ack && !best->sure && best->copies == 1 && took > context_.response_us()) {
     context_.report("T2-ACK"_rule, Severity::kInconclusive, seen.place, node,
@@ -268,7 +288,7 @@ void Acks::delivered(std::uint16_t node, const Observation& seen,
   };
   for (std::size_t i = 0; i < ring.size(); ++i) {
     Arrived& arrived = ring.newest(i);
-    if (arrived.net.src != received.src) continue;
+    if (arrived.net.src != received.src || never_came(node, arrived)) continue;
     const bool sound = arrived.net.sound;
     if (sound && is_nobodys(arrived.net) && equal(arrived.net.body(), received.data)) {
       nobodys = &arrived;
@@ -368,6 +388,11 @@ void Acks::judge_order(std::uint16_t node, const Observation& seen, const Arrive
   if (!context_.device(node).whole || !arrived.sure) return;
   Ring<Arrived, kRoom>& ring = arrived_[node];
   for (std::size_t i = 0; i < ring.size(); ++i) {
+    Arrived& other = ring.newest(i);
+    const bool overtaken = other.link == arrived.link && other.order < arrived.order;
+    if (overtaken && other.overtaken_us < 0) other.overtaken_us = seen.place.time_us;
+  }
+  for (std::size_t i = 0; i < ring.size(); ++i) {
     const Arrived& other = ring.newest(i);  // Of two that are alike nobody knows which one it is.
     if (other.order != arrived.order && same_payload(other.net, arrived.net)) return;
   }
@@ -448,12 +473,33 @@ bool Acks::lacks_delivery(std::uint16_t node, const Arrived& arrived) {
          !delivered_before(node, arrived);
 }
 
+// Returns whether the application of a mote got what came later, and few messages came before: then
+// no buffer can have been full, whatever the mote did besides.
+bool Acks::overtaken(std::uint16_t node, const Arrived& arrived) {
+  if (arrived.overtaken_us < 0 || context_.device(node).role != machine::Role::kMote) return false;
+  std::int64_t since_us = arrived.whole_us;
+  for (const BusyTime& busy : context_.busy_times(node)) {
+    if (!busy.line && busy.to_us >= arrived.whole_us) since_us = std::min(since_us, busy.from_us);
+  }
+  since_us -= 2 * context_.response_us();
+  std::size_t before = 0;
+  Ring<Arrived, kRoom>& ring = arrived_[node];
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const Arrived& other = ring.newest(i);
+    before += other.order < arrived.order && other.whole_us >= since_us ? 1 : 0;
+  }
+  return before < machine::kSerialRoom;
+}
+
 // Reports what by the node's log came for its application, which never got it.
 void Acks::missing_delivery(std::uint16_t node, Arrived& arrived, std::int64_t now_us) {
-  const std::int64_t due_us = context_.due_us(node, arrived.whole_us);
+  // What was overtaken waits for nothing any more (decision 125), however busy its node is.
+  const bool overtaken = this->overtaken(node, arrived);
+  const std::int64_t due_us = overtaken ? arrived.overtaken_us + context_.response_us()
+                                        : context_.due_us(node, arrived.whole_us);
   if (now_us <= due_us || !lacks_delivery(node, arrived)) return;
   // A busy application, or what waits for it, may have filled the buffer.
-  const bool held = context_.busy(node, arrived.whole_us, due_us);
+  const bool held = !overtaken && context_.busy(node, arrived.whole_us, due_us);
   const bool acked = arrived.acks > 0;  // Then it was in no buffer any more.
   const bool full = !acked && context_.crowded(node, arrived.place.time_us);
   const bool nothing = arrived.ackable && !acked;

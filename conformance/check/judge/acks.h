@@ -49,19 +49,23 @@ namespace rubric::check {
 struct Arrived {
   Net net;
   Place place;
-  std::int64_t whole_us = -1;                  ///< When the receiver has it whole.
+  std::int64_t whole_us = -1;                  ///< When the receiver has it whole,
+  std::int64_t again_us = -1;                  ///< and when again.
   std::uint16_t sender = kNobody;              ///< The node that sent it on its last hop.
   machine::Link link = machine::Link::kRadio;  ///< By which it came.
   ReqId forbidden = ReqId::kNone;              ///< Acking or delivering it breaks this rule.
   bool weak = false;
   bool must_ack = false;
-  bool ackable = false;   ///< Apart from `free`: reliable, and so on.
+  bool to_self = false;   ///< Its dest is the node itself.
+  bool ackable = false;   ///< Apart from `free`: reliable, to the node itself, and so on.
   bool no_room = false;   ///< Its ack may have found no room (decision 122).
   bool doubtful = false;  ///< The node may not be a member.
   ReqId delivers =
       ReqId::kNone;         ///< Why the application gets it, if it arrived; kNone: it need not.
   bool sure = false;        ///< It surely arrived.
+  bool came = false;        ///< By a log the node was given it, switched off or not.
   std::uint32_t order = 0;  ///< Counts what came to the node.
+  std::int64_t overtaken_us = -1;  ///< When its application got what came later by the same line.
   std::uint8_t copies = 1;
   std::uint8_t acks = 0;
   std::uint8_t delivered = 0;
@@ -76,6 +80,8 @@ struct Arrival {
   bool doubtful = false;           ///< The node may not be a member, and then must ignore it.
   ReqId delivers = ReqId::kNone;   ///< Why the application gets it; kNone: it need not.
   bool no_room = false;            ///< Messages of its application fill the ack's buffer.
+  bool to_self = true;             ///< Its dest is the node itself.
+  bool came = false;               ///< By a log the node was given it, switched off or not.
 };
 
 class Acks {
@@ -86,7 +92,9 @@ class Acks {
   /// Notes that a message comes to `node`.
   void arrived(std::uint16_t node, const Observation& seen, std::uint16_t sender, const Net& net,
                const Arrival& arrival);
-  void repeated(std::uint16_t node, const Net& net);
+  void repeated(std::uint16_t node, const Net& net, std::int64_t now_us);
+  /// Notes that by a log the node was given the message, switched off or not.
+  void came(std::uint16_t node, const Net& net);
   /// Notes that by a log the node received the message.
   /// `may`: it is on then, and may be a member, whatever it was when the message was sent.
   void surely(std::uint16_t node, const Net& net, std::int64_t now_us, bool may, bool no_room);
@@ -115,6 +123,8 @@ class Acks {
   void close(std::uint16_t node, Arrived& arrived);
   void missing_ack(std::uint16_t node, Arrived& arrived, std::int64_t now_us, bool lives);
   void missing_delivery(std::uint16_t node, Arrived& arrived, std::int64_t now_us);
+  bool never_came(std::uint16_t node, const Arrived& arrived) const;
+  bool overtaken(std::uint16_t node, const Arrived& arrived);
   bool lacks_delivery(std::uint16_t node, const Arrived& arrived);
   void meant_ack(std::uint16_t node, const Net& ack);
   std::int64_t queued_us(std::uint16_t node, const Arrived& arrived);

@@ -234,13 +234,31 @@ const std::vector<BusyTime>& Context::busy_times(std::uint16_t node) const {
 
 std::int64_t Context::due_us(std::uint16_t node, std::int64_t whole_us,
                              std::optional<machine::Link> line) const {
+  // While a line is free for so long one at least of what waits is served, and a buffer holds few.
+  std::size_t served = 0;
+  std::int64_t free_us = whole_us;
   std::int64_t due = whole_us + response_us();
   for (const BusyTime& busy : busy_times(node)) {
     const bool other = line && busy.line && busy.line != line;
     if (other || busy.from_us > due || busy.to_us < whole_us) continue;
-    due = busy.to_us == INT64_MAX ? INT64_MAX : std::max(due, busy.to_us + 2 * response_us());
+    if (busy.to_us == INT64_MAX) return INT64_MAX;
+    if (busy.from_us - free_us >= response_us() && ++served > machine::kRadioRoom) break;
+    free_us = std::max(free_us, busy.to_us);
+    due = std::max(due, busy.to_us + 2 * response_us());
   }
   return due;
+}
+
+std::int64_t Context::handled_us(std::uint16_t node, std::int64_t whole_us,
+                                 std::int64_t now_us) const {
+  std::int64_t soon_us = whole_us + response_us();
+  if (!device(node).whole) return std::max(soon_us, now_us);
+  // What waits for the application is accepted for a line when that takes it, before it leaves now.
+  for (const BusyTime& busy : busy_times(node)) {
+    if (busy.line || busy.from_us > soon_us || busy.to_us < whole_us) continue;
+    soon_us = std::max(soon_us, std::min(busy.to_us, now_us) + response_us());
+  }
+  return soon_us;
 }
 
 bool Context::busy(std::uint16_t node, std::int64_t from_us, std::int64_t to_us,
@@ -277,8 +295,13 @@ int Context::backlog_of(std::uint16_t node, std::size_t index) const {
 // Returns how many things at most a node had still to handle at once while a message that came at
 // `time_us` was among them, beside that one.
 int Context::backlog(std::uint16_t node, std::int64_t time_us) const {
+  // What came since a busy application took nothing waits as well.
+  std::int64_t since_us = time_us;
+  for (const BusyTime& busy : busy_times(node)) {
+    if (!busy.line && busy.to_us >= time_us) since_us = std::min(since_us, busy.from_us);
+  }
   const auto begin =
-      std::ranges::lower_bound(run.seen, time_us - 2 * response_us(), {},
+      std::ranges::lower_bound(run.seen, since_us - 2 * response_us(), {},
                                [](const Observation& seen) { return seen.place.time_us; });
   int waiting = 0;
   int most = 0;
@@ -288,6 +311,11 @@ int Context::backlog(std::uint16_t node, std::int64_t time_us) const {
     if (it->place.time_us >= time_us) most = std::max(most, waiting - 1);
   }
   return most;
+}
+
+bool Context::full(std::uint16_t node, std::int64_t time_us) const {
+  constexpr machine::Link kNone = machine::Link::kPeis;  // Only the application counts.
+  return busy(node, time_us, time_us, kNone) && crowded(node, time_us);
 }
 
 bool Context::crowded(std::uint16_t node, std::int64_t time_us) const {

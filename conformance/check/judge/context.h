@@ -98,6 +98,9 @@ struct Context {
   /// Returns whether so many messages came to the node around that time that they may have found a
   /// buffer full (decision 122); by a whole log, whether so many waited for it to handle them.
   bool crowded(std::uint16_t node, std::int64_t time_us) const;
+  /// Returns whether by its log the application of the node took nothing then, and so many messages
+  /// waited for it that they may have filled a buffer.
+  bool full(std::uint16_t node, std::int64_t time_us) const;
   /// Returns the times in which by its log a line or the application of the node was busy.
   const std::vector<BusyTime>& busy_times(std::uint16_t node) const;
   machine::JoinContext join_context(std::uint16_t id, std::uint16_t island,
@@ -121,10 +124,7 @@ struct Context {
             std::int64_t to_us, const std::string& what);
   /// Returns until when what a node had whole is accepted for the line by which it answers now: by
   /// a log that is not whole it may handle it late (decision 125).
-  std::int64_t handled_us(std::uint16_t node, std::int64_t whole_us, std::int64_t now_us) const {
-    const std::int64_t soon_us = whole_us + response_us();
-    return device(node).whole ? soon_us : std::max(soon_us, now_us);
-  }
+  std::int64_t handled_us(std::uint16_t node, std::int64_t whole_us, std::int64_t now_us) const;
   /// Notes that a life of the node begins, with nothing waiting.
   void begin_life(std::uint16_t node);
 

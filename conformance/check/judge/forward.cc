@@ -15,7 +15,7 @@ using machine::Route;
 }  // namespace
 
 void Forwarding::heard_on_serial(std::uint16_t sink, std::uint16_t base, const Observation& seen,
-                                 const Net& net, bool surely_received) {
+                                 const Net& net, Down down) {
   Line* const line = find(sink);
   if (line == nullptr || line->island == kNoIsland) return;
   const Route route =
@@ -37,13 +37,15 @@ void Forwarding::heard_on_serial(std::uint16_t sink, std::uint16_t base, const O
   } else if (net.dest == machine::Address{line->island, line->am}) {
     passing.forbidden = "N7-DELIVER"_rule;
   }
-  passing.sure = surely_received;
+  if (down.off) passing.forbidden = "N10-OFF"_rule;
+  passing.sure = down.sure;
+  passing.came = down.given || down.off || !context_.device(sink).whole;
   passing.cut =
       context_.device(sink).whole && seen.frame.payload.size() < rubicon::NetMsgView::kMaxSizeBytes;
   // A log says what was received.
   passing.owes = onward && net.sound && net.reliable <= 1 && !line->deaf &&
                  net.dest.pid != machine::kBroadcastPid;
-  passing.owed = passing.owes && (surely_received || !context_.device(sink).hearing);
+  passing.owed = passing.owes && !down.off && (down.sure || !context_.device(sink).hearing);
   store(line->down, passing, line->owed_down);
   // A capture does not show whether the base station wrote it; from PEIS come other islands' only.
   const bool own_island = net.src.pid == line->island && net.src.devid != machine::kNullDevid;
@@ -54,7 +56,8 @@ void Forwarding::heard_on_serial(std::uint16_t sink, std::uint16_t base, const O
                      "Messages of the base station, or of other islands.",
                      {}});
   }
-  const bool foreign = net.dest.pid != line->island && !machine::is_reserved(net.dest.pid);
+  const bool foreign = net.dest.pid != line->island && net.dest.pid != down.island &&
+                       !machine::is_reserved(net.dest.pid);
   if (!foreign) return;
   context_.report("N8-LOOP"_rule, Severity::kWeak, seen.place, base,
                   {"A message to " + text_of(net.dest) + " is handed to the sink of island " +
@@ -88,13 +91,16 @@ void Forwarding::judge_order(Line& line, const Passing& passing, const Observati
 void Forwarding::pass_down(Line& line, Passing& passing, const Observation& seen, const Net& net) {
   if (passing.forbidden != ReqId::kNone) {
     const bool malformed = passing.forbidden == "N11-NBYTES"_rule;
+    const bool off = passing.forbidden == "N10-OFF"_rule;
     context_.report(
         passing.forbidden, passing.weak ? Severity::kWeak : Severity::kFail, seen.place, line.sink,
         {"The sink of island " + number(line.island) + " radiates " + name_of(net) +
              (malformed ? ", whose nbytes is " + number(passing.net.nbytes) + " while " +
                               number(passing.net.payload.size()) + " bytes came."
-                        : "."),
+              : off ? ", which came while its serial interface was off."
+                    : "."),
          malformed      ? "A malformed message is dropped."
+         : off          ? "What is switched off receives nothing."
          : passing.weak ? "Another island's messages are not radiated."
                         : "It is for the sink itself, whose application gets it.",
          {}});
@@ -124,6 +130,7 @@ bool Forwarding::sent_on_radio(std::uint16_t sink, const Observation& seen, cons
   Passing* near = nullptr;
   for (std::size_t i = 0; i < line->down.size(); ++i) {
     Passing& passing = line->down.newest(i);
+    if (!passing.came) continue;
     if (!same_message(passing.net, net)) {
       const bool close = resembles(*line, passing, net);
       if (close && near == nullptr) near = &passing;
@@ -183,7 +190,8 @@ bool Forwarding::relayed(Line& line, const Observation& seen, const Net& net) {
   if (heard == nullptr) return false;
   // Once it may what is for a mote of its island, to it (decision 115), or for all (decision 114).
   const bool again = heard->relayed >= heard->copies;
-  const bool forbidden = heard->forbidden != ReqId::kNone && (!mote || !net.sound);
+  const bool forbidden = heard->forbidden != ReqId::kNone &&
+                         (!mote || !net.sound || heard->forbidden == "N10-OFF"_rule);
   const bool right = mote && !again && !forbidden && seen.frame.dest == net.dest.devid;
   if (heard->relayed < 255) ++heard->relayed;
   const bool all = net.dest.pid == machine::kBroadcastPid && net.sound && heard->passed == 0;
@@ -273,7 +281,7 @@ void Forwarding::refuse_down(Line& line, const Observation& seen, const Net& net
   Passing* best = nullptr;
   for (std::size_t i = 0; i < line.down.size(); ++i) {
     Passing& passing = line.down.newest(i);
-    if (!resembles(line, passing, net)) continue;
+    if (!passing.came || !resembles(line, passing, net)) continue;
     if (best == nullptr || best->passed > 0) best = &passing;
   }
   Said said;

@@ -24,25 +24,35 @@ struct Passing {
   bool owed = false;               ///< Received, and not yet passed on.
   bool owes = false;               ///< It is to be passed on, if it was received.
   bool sure = true;                ///< The reception is proven.
-  bool cut = false;                ///< It came without the bytes after its payload.
-  bool twin = false;               ///< Another one of the same content is around.
-  std::uint8_t copies = 1;         ///< Times that it may have been received.
+  bool came = true;         ///< By a whole log it was given to the sink, or the sink was off.
+  bool cut = false;         ///< It came without the bytes after its payload.
+  bool twin = false;        ///< Another one of the same content is around.
+  std::uint8_t copies = 1;  ///< Times that it may have been received.
   std::uint8_t passed = 0;
   std::uint8_t relayed = 0;  ///< Sent on by radio, where it came from.
 };
 
 class Forwarding {
  public:
+  /// How a message came down a sink's serial line.
+  struct Down {
+    bool sure = false;                 ///< The sink surely received it, and is able to radiate it.
+    bool given = false;                ///< It surely came to its end of the line.
+    bool off = false;                  ///< Which is switched off.
+    std::uint16_t island = kNoIsland;  ///< Of the base station.
+  };
+
   Forwarding(Context& context);
 
   /// Takes a message on the air, from somebody else, to the address of sinks or to all.
+  /// `off`: a sink that by its log was given it although its radio is switched off.
   void heard_on_radio(const Observation& seen, std::uint16_t sender, const Net& net,
-                      std::uint16_t surely_received_by);
+                      std::uint16_t surely_received_by, std::uint16_t off);
   /// Notes that the link repeated the frame: on the air, or down the serial line of `sink`.
   void repeated(const Net& net, std::uint16_t sink);
   /// Takes a message down the serial line of `sink`.
   void heard_on_serial(std::uint16_t sink, std::uint16_t base, const Observation& seen,
-                       const Net& net, bool surely_received);
+                       const Net& net, Down down);
   /// Returns whether the same message came down the sink's serial line, or one that may be its, and
   /// was not yet radiated.
   bool came_down(std::uint16_t sink, const Net& net);

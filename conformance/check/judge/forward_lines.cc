@@ -120,7 +120,7 @@ void Forwarding::surely_down(std::uint16_t sink, const Net& net, std::int64_t no
   for (std::size_t i = 0; i < line->down.size(); ++i) {
     Passing& passing = line->down.newest(i);
     if (!same_message(passing.net, net)) continue;
-    passing.sure = true;
+    passing.sure = passing.came = true;
     passing.whole_us = std::max(passing.whole_us, now_us);
     if (passing.owes && !passing.owed && passing.passed == 0) {
       passing.owed = true;

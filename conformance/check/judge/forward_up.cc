@@ -23,12 +23,13 @@ bool begins_with(const Net& serial, const Net& radio) {
 }  // namespace
 
 void Forwarding::heard_on_radio(const Observation& seen, std::uint16_t sender, const Net& net,
-                                std::uint16_t surely_received_by) {
+                                std::uint16_t surely_received_by, std::uint16_t off) {
   for (Line& line : lines_) {
     if (line.sink == sender || !line.serial) continue;
     // A sink with a log of what it was given hears nothing else, and hears it in its own order.
     const bool sure = surely_received_by == line.sink;
-    if (context_.device(line.sink).hearing ? !sure : seen.received) continue;
+    const bool is_off = off == line.sink;
+    if (context_.device(line.sink).hearing ? !sure && !is_off : seen.received) continue;
     if (seen.frame.dest != line.am && seen.frame.dest != machine::kAmBroadcast) continue;
     const Route route =
         machine::route_received({Role::kSink, {line.island, line.am}, true, context_.sink_am},
@@ -48,9 +49,10 @@ void Forwarding::heard_on_radio(const Observation& seen, std::uint16_t sender, c
       passing.forbidden = route.requirement;
       passing.weak = route.requirement == "N6-OTHER"_rule;
     }
+    if (is_off) passing.forbidden = "N10-OFF"_rule;
     passing.owed = onward && line.island != kNoIsland && !line.off && !line.deaf && net.sound &&
                    net.reliable <= 1 && net.src.pid == line.island && sure;
-    line.heard += onward && net.sound && net.src.pid == line.island ? 1 : 0;
+    line.heard += onward && !is_off && net.sound && net.src.pid == line.island ? 1 : 0;
     // The message may be on the serial line already, if the two taps' clocks differ.
     bool early = false;
     for (std::size_t i = 0; i < line.early.size(); ++i) {
@@ -62,6 +64,8 @@ void Forwarding::heard_on_radio(const Observation& seen, std::uint16_t sender, c
       passing.passed = 1;
       passing.owed = false;
       early = true;
+      // A whole log has one clock, and what a sink does after its cause.
+      if (context_.device(line.sink).whole) unheard(line, before);
       break;
     }
     store(line.up, passing, line.owed_up);
@@ -82,6 +86,10 @@ void Forwarding::pass_up(Line& line, Passing& passing, const Observation& seen) 
                   number(passing.net.nbytes) + " while " + number(passing.net.payload.size()) +
                   " bytes came.";
       said.expected = "A malformed message is dropped.";
+    } else if (passing.forbidden == "N10-OFF"_rule) {
+      said.text =
+          "The sink forwards " + name_of(passing.net) + ", which came while its radio was off.";
+      said.expected = "What is switched off receives nothing.";
     } else {
       said.text = "The sink of island " + number(line.island) + " forwards " +
                   name_of(passing.net) + " to its base station.";

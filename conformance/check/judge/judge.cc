@@ -98,6 +98,10 @@ void Judge::look(std::uint32_t index) {
       announcements_.ends(mark.device, seen.place.time_us);
       originals_.ends(mark.device, seen.place.time_us, interfaces_);
       begin_life(mark.device, INT64_MAX);
+      // A base station begins in its own island; its sink need not.
+      if (is(mark.device, Role::kBaseStation) && who_.devices[mark.device].whole) {
+        own_island_[mark.device] = who_.devices[mark.device].island;
+      }
       if (is(mark.device, Role::kMote)) motes_.booted(mark.device, seen.place.time_us);
       break;
     case Kind::kLinkAck:
@@ -245,6 +249,7 @@ void Judge::called(const Observation& seen, std::uint16_t device) {
     return;
   }
   if (const auto* set = std::get_if<machine::SetInterface>(seen.call)) {
+    if (set->link == machine::Link::kSerial) peis_.switched(device, set->on, seen.place.time_us);
     if (!set->on) acks_.interrupted(device, seen.place.time_us, who_.devices[device].whole);
     originals_.switched(device, *set, seen.place.time_us);
     synaptic_.able(device, *set, seen.place.time_us);
@@ -343,22 +348,24 @@ void Judge::repeated(std::uint32_t index, const Observation& seen, const Mark& m
   const bool serial = seen.kind == Kind::kSerial;
   if (serial && mark.device == kNobody) return;
   forwarding_.repeated(net, serial ? who_.devices[mark.device].partner : kNobody);
-  context_.for_motes(seen.frame.dest, [&](std::uint16_t mote) { acks_.repeated(mote, net); });
-  for (const std::uint16_t sink : context_.sinks) acks_.repeated(sink, net);
+  const std::int64_t now = seen.place.time_us;
+  context_.for_motes(seen.frame.dest, [&](std::uint16_t mote) { acks_.repeated(mote, net, now); });
+  for (const std::uint16_t sink : context_.sinks) acks_.repeated(sink, net, now);
 }
 
 // Takes a log's line that gives a node a message that is known from its sender.
 void Judge::surely(const Observation& seen, const Mark& mark, const Net& net) {
-  if (interfaces_.switched_off(mark.receiver, seen.frame.link)) return;
+  acks_.came(mark.receiver, net);
+  if (interfaces_.switched_off(mark.receiver, seen.frame.link)) return given_off(seen, mark, net);
   acks_.surely(mark.receiver, net, seen.place.time_us,
                standing(mark.receiver) != Standing::kOutside, no_room(mark.receiver, net));
   synaptic_.heard(mark.receiver, seen, net);
   if (seen.kind == Kind::kRadio) synaptic_.given(mark.receiver, seen, net);
   if (net.is_ack()) originals_.ack_given(mark.receiver, net, seen.place.time_us);
   if (seen.kind == Kind::kRadio) {
-    forwarding_.heard_on_radio(seen, mark.device, net, mark.receiver);
+    forwarding_.heard_on_radio(seen, mark.device, net, mark.receiver, kNobody);
   }
-  if (mark.again) acks_.repeated(mark.receiver, net);
+  if (mark.again) acks_.repeated(mark.receiver, net, seen.place.time_us);
   if (seen.kind == Kind::kSerial) {
     peis_.surely_up(mark.receiver, net, seen.place.time_us);
     forwarding_.surely_down(mark.receiver, net, seen.place.time_us);
@@ -368,7 +375,7 @@ void Judge::surely(const Observation& seen, const Mark& mark, const Net& net) {
 void Judge::radio_net(std::uint32_t index, const Observation& seen, const Mark& mark,
                       const Net& net) {
   const std::uint16_t sender = mark.device;
-  if (sender != kNobody) originals_.used(sender, net.seq_num);
+  if (sender != kNobody && !is(sender, Role::kSink)) originals_.used(sender, net.seq_num);
   if (is(sender, Role::kMote)) {
     motes_.net_msg(sender, seen, net);
     own_message(sender, seen, net, machine::Link::kRadio, motes_.address(sender).value_or(net.src));
@@ -377,6 +384,7 @@ void Judge::radio_net(std::uint32_t index, const Observation& seen, const Mark& 
     const bool own = sinks_.is_own(sender, net.src, seen.place.time_us);
     const bool passes = forwarding_.came_down(sender, net) ||
                         (forwarding_.alters(sender, net) && !originals_.asked(sender, net));
+    if (!passes) originals_.used(sender, net.seq_num);
     if (own && !passes) {
       own_message(sender, seen, net, machine::Link::kRadio, net.src);
     } else if (passes || !forged(sender, seen, net, machine::Link::kRadio, address_of(sender))) {
@@ -387,7 +395,8 @@ void Judge::radio_net(std::uint32_t index, const Observation& seen, const Mark& 
   }
   if (sender == kNobody && seen.frame.src == context_.sink_am) forwarding_.somebody_sent(net);
   const std::uint16_t sure = sure_sink(index);
-  forwarding_.heard_on_radio(seen, sender, net, sure);
+  forwarding_.heard_on_radio(seen, sender, net, sure, kNobody);
+  given_off(seen, mark, net);
   const auto hear = [&](std::uint16_t mote) {
     if (mote != sender) mote_hears(index, mote, seen, mark, net);
   };
@@ -437,25 +446,6 @@ bool Judge::forged(std::uint16_t node, const Observation& seen, const Net& net, 
   return true;
 }
 
-// Counts an ack at the originator of the acked message.
-void Judge::ack_comes(const Net& ack) {
-  const std::int32_t acked = machine::acked_seq_num(ack.body());
-  if (acked < 0) return;
-  const auto seq_num = static_cast<std::uint16_t>(acked);
-  context_.for_motes(ack.dest.devid, [&](std::uint16_t mote) {
-    const std::uint16_t island = motes_.address(mote).value_or(ack.dest).pid;
-    if (island == ack.dest.pid) originals_.ack_heard(mote, ack, seq_num);
-  });
-  for (const std::uint16_t sink : context_.sinks) {
-    const Device& device = who_.devices[sink];
-    if (sinks_.island(sink) != ack.dest.pid) continue;
-    if (ack.dest.devid == device.am) originals_.ack_heard(sink, ack, seq_num);
-    if (ack.dest.devid == machine::kNullDevid && device.partner != kNobody) {
-      originals_.ack_heard(device.partner, ack, seq_num);
-    }
-  }
-}
-
 void Judge::serial(std::uint32_t index, const Observation& seen, const Mark& mark) {
   const std::uint16_t sink = seen.to_mote ? who_.devices[mark.device].partner : mark.device;
   if (seen.to_mote && !seen.received && seen.frame.type == am::kConfig) {
@@ -471,6 +461,7 @@ void Judge::serial(std::uint32_t index, const Observation& seen, const Mark& mar
     return;
   }
   if (const std::int32_t id = set_island_id(seen.frame); id >= 0 && seen.to_mote) {
+    if (!seen.received) own_island_.erase(mark.device);  // It is what it now tells its sink.
     if (interfaces_.switched_off(sink, machine::Link::kSerial)) return;  // It hears nothing.
     const auto island = static_cast<std::uint16_t>(id);
     const bool sure = serial_acked(run_, index) || mark.receiver == sink;
@@ -488,7 +479,9 @@ void Judge::serial(std::uint32_t index, const Observation& seen, const Mark& mar
   if (seen.frame.type != am::kNet) return;
   if (!parse_net(seen.frame.payload, net)) return cut_off(seen, mark.device);
   if (!seen.received) whole(seen, mark.device);
-  if (!seen.received) originals_.used(mark.device, net.seq_num);
+  // What it passes on has the number that it came with.
+  const bool passes = seen.to_mote ? peis_.came(mark.device, net) : forwarding_.came_up(sink, net);
+  if (!seen.received && !passes) originals_.used(mark.device, net.seq_num);
   if (seen.to_mote) {
     down_serial(index, seen, mark, sink, net);
   } else {
@@ -540,13 +533,14 @@ void Judge::handed_down(std::uint16_t base, const Observation& seen, const Net& 
 void Judge::down_serial(std::uint32_t index, const Observation& seen, const Mark& mark,
                         std::uint16_t sink, const Net& net) {
   const std::uint16_t island = sinks_.island(sink);
-  const machine::Address base{island, machine::kNullDevid};
+  const machine::Address base = address_of(mark.device);
   if (net.src == base) own_message(mark.device, seen, net, machine::Link::kSerial, base);
   if (net.src != base && !seen.received) handed_down(mark.device, seen, net, base);
-  const bool sure = !interfaces_.switched_off(sink, machine::Link::kSerial) &&
-                    (serial_acked(run_, index) || mark.receiver == sink);
-  const bool deaf = interfaces_.switched_off(sink, machine::Link::kRadio);
-  forwarding_.heard_on_serial(sink, mark.device, seen, net, sure && !deaf);
+  const bool sure = serial_acked(run_, index) || mark.receiver == sink;
+  const bool off = interfaces_.off(sink, machine::Link::kSerial, seen.place.time_us);
+  const bool able = !interfaces_.switched_off(sink, machine::Link::kSerial) &&
+                    !interfaces_.switched_off(sink, machine::Link::kRadio);
+  forwarding_.heard_on_serial(sink, mark.device, seen, net, {sure && able, sure, off, base.pid});
   const std::uint16_t am = who_.devices[sink].am;
   if (net.dest.devid != am && net.dest.devid != machine::kBroadcastDevid) return;
   hears(sink, {Role::kSink, {island, am}, true, context_.sink_am}, machine::Link::kSerial, seen,
@@ -561,8 +555,9 @@ void Judge::peis(const Observation& seen, std::uint16_t base) {
   const machine::Address own = address_of(base);
   if (!seen.received) {
     const bool first = originals_.accepted(base, net.seq_num);
-    originals_.used(base, net.seq_num);
-    if (!peis_.came(base, net) && forged(base, seen, net, machine::Link::kPeis, own)) return;
+    const bool came = peis_.came(base, net);
+    if (!came) originals_.used(base, net.seq_num);
+    if (!came && forged(base, seen, net, machine::Link::kPeis, own)) return;
     const bool original = peis_.sent(base, seen, net, own, first);
     if (original) own_message(base, seen, net, machine::Link::kPeis, own);
     return;

@@ -4,6 +4,7 @@
 
 #include "conformance/check/judge/judge_pass.h"
 #include "conformance/check/links.h"
+#include "conformance/machine/transport.h"
 
 namespace rubric::check {
 using machine::Role;
@@ -114,7 +115,7 @@ void Judge::hears(std::uint16_t node, const machine::Router& router, machine::Li
                  !owed              ? ReqId::kNone
                  : cut && !straight ? "N11-SHORT"_rule
                                     : route.delivered,
-                 no_room(node, net)});
+                 no_room(node, net), net.dest == router.own, sure});
   if (sure) synaptic_.heard(node, seen, net);
   if (sure && !off && route.deliver) synaptic_.given(node, seen, net, on);
   const bool exact = net.dest == router.own && owed && !straight && !cut && on && !off;
@@ -123,16 +124,48 @@ void Judge::hears(std::uint16_t node, const machine::Router& router, machine::Li
   }
 }
 
+// Takes what a log gives a node whose interface is switched off: it must do nothing with it.
+void Judge::given_off(const Observation& seen, const Mark& mark, const Net& net) {
+  const machine::Link link = seen.frame.link;
+  if (mark.receiver == kNobody || !interfaces_.switched_off(mark.receiver, link)) return;
+  // What was on its way as it was switched off may still come.
+  const bool off = interfaces_.off(mark.receiver, link, seen.place.time_us);
+  if (seen.kind == Observation::Kind::kSerial) return peis_.came_while_off(mark.receiver, net, off);
+  forwarding_.heard_on_radio(seen, mark.device, net, off ? kNobody : mark.receiver,
+                             off ? mark.receiver : kNobody);
+}
+
+// Counts an ack at the originator of the acked message.
+void Judge::ack_comes(const Net& ack) {
+  const std::int32_t acked = machine::acked_seq_num(ack.body());
+  if (acked < 0) return;
+  const auto seq_num = static_cast<std::uint16_t>(acked);
+  context_.for_motes(ack.dest.devid, [&](std::uint16_t mote) {
+    const std::uint16_t island = motes_.address(mote).value_or(ack.dest).pid;
+    if (island == ack.dest.pid) originals_.ack_heard(mote, ack, seq_num);
+  });
+  for (const std::uint16_t sink : context_.sinks) {
+    const Device& device = who_.devices[sink];
+    const machine::Address own{sinks_.island(sink), device.am};
+    if (ack.dest == own) originals_.ack_heard(sink, ack, seq_num);
+    if (device.partner == kNobody || ack.dest != address_of(device.partner)) continue;
+    originals_.ack_heard(device.partner, ack, seq_num);
+  }
+}
+
 // A base station is given a message for sure where its own log says so.
 void Judge::base_station_hears(std::uint16_t sink, const Observation& seen, const Mark& mark,
                                const Net& net) {
   const std::uint16_t base = who_.devices[sink].partner;
   if (base == kNobody) return;
+  const std::int64_t now = seen.place.time_us;
   const bool on = !interfaces_.switched_off(base, machine::Link::kSerial);
-  peis_.came_up(base, sinks_.island(sink), seen, net, seen.received && on);
-  hears(base,
-        {Role::kBaseStation, {sinks_.island(sink), machine::kNullDevid}, true, context_.sink_am},
-        machine::Link::kSerial, seen, sink, net, mark.receiver == base);
+  const machine::Address own = address_of(base);
+  peis_.came_up(base, own.pid, seen, net, on);
+  if (!on && seen.received)
+    peis_.came_while_off(base, net, interfaces_.off(base, machine::Link::kSerial, now));
+  hears(base, {Role::kBaseStation, own, true, context_.sink_am}, machine::Link::kSerial, seen, sink,
+        net, mark.receiver == base);
 }
 
 }  // namespace rubric::check

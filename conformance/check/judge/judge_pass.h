@@ -38,6 +38,7 @@ class Judge {
   void repeated(std::uint32_t index, const Observation& seen, const Mark& mark);
   // Takes a log's line that gives a node a message that is known from its sender.
   void surely(const Observation& seen, const Mark& mark, const Net& net);
+  void given_off(const Observation& seen, const Mark& mark, const Net& net);
   // Returns the sink that surely received a frame for the sinks' address.
   std::uint16_t sure_sink(std::uint32_t index) const;
   void radio(std::uint32_t index, const Observation& seen, const Mark& mark);

@@ -31,14 +31,14 @@ PeisWatch::PeisWatch(Context& context, std::size_t devices) : context_(context),
 PeisWatch::Message* PeisWatch::match(Messages& messages, const Net& net) {
   for (std::size_t i = 0; i < messages.size(); ++i) {
     Message& message = messages.oldest(i);
-    if (message.passed) continue;
+    if (message.passed || !message.came) continue;
     if (same_message(message.net, net) && same_payload(message.net, net)) return &message;
   }
   return nullptr;
 }
 
 void PeisWatch::came_up(std::uint16_t base, std::uint16_t island, const Observation& seen,
-                        const Net& net, bool surely) {
+                        const Net& net, bool on) {
   if (!logs_peis(context_.run, base) || island == kNoIsland) return;
   const machine::Route route =
       machine::route_received(base_station({island, machine::kNullDevid}, context_.sink_am),
@@ -46,7 +46,34 @@ void PeisWatch::came_up(std::uint16_t base, std::uint16_t island, const Observat
   // It may pass a broadcast to every island on, once, or not (decision 114).
   const bool onward = route.onward == Onward::kPeis;
   if (!onward && net.dest.pid != machine::kBroadcastPid) return;
-  bases_[base].up.push({net, seen.place, onward && surely && net.sound, false});
+  const bool given = seen.received;
+  Message& message = bases_[base].up.push({net, seen.place, onward && given && on && net.sound});
+  message.came = given || !context_.device(base).whole;
+}
+
+void PeisWatch::came_while_off(std::uint16_t base, const Net& net, bool off) {
+  Messages& up = bases_[base].up;
+  for (std::size_t i = 0; i < up.size(); ++i) {
+    Message& message = up.newest(i);
+    if (!same_message(message.net, net)) continue;
+    message.came = true;
+    message.off = off;
+    return;
+  }
+}
+
+void PeisWatch::switched(std::uint16_t base, bool on, std::int64_t now_us) {
+  Messages& down = bases_[base].down;
+  if (!on) overdue(base, down, false, now_us, false);
+  for (std::size_t i = 0; i < down.size(); ++i) {
+    Message& message = down.newest(i);
+    if (on && message.held) {
+      message.owed = !message.passed;
+      message.given_us = now_us;
+    }
+    message.held = !on && (message.owed || message.held);
+    if (!on) message.owed = false;
+  }
 }
 
 void PeisWatch::surely_up(std::uint16_t base, const Net& net, std::int64_t now_us) {
@@ -56,6 +83,7 @@ void PeisWatch::surely_up(std::uint16_t base, const Net& net, std::int64_t now_u
     if (!same_message(message.net, net)) continue;
     message.owed = !message.passed && net.sound && net.dest.pid != machine::kBroadcastPid;
     message.given_us = now_us;
+    message.came = true;
     message.net = net;  // As it was given, perhaps without the bytes after its content.
     return;
   }
@@ -83,6 +111,13 @@ bool PeisWatch::sent(std::uint16_t base, const Observation& seen, const Net& net
   if (came != nullptr) {
     came->passed = true;
     came->owed = false;
+    if (came->off) {
+      context_.report("N10-OFF"_rule, Severity::kFail, seen.place, base,
+                      {"The base station puts " + name_of(net) +
+                           " on PEIS, which came while its serial interface was off.",
+                       "What is switched off receives nothing.",
+                       {}});
+    }
   } else if (!stray) {
     refuse(base, seen, net, watch.up, true);
   }
@@ -97,7 +132,7 @@ void PeisWatch::given(std::uint16_t base, const Observation& seen, const Net& ne
   const bool onward = route.onward == Onward::kSerial && net.sound;
   // A base station may pass a broadcast to every island on, or not (decision 114).
   if (onward || net.dest.pid == machine::kBroadcastPid) {
-    bases_[base].down.push({net, seen.place, onward && !serial_off, false});
+    bases_[base].down.push({net, seen.place, onward && !serial_off});
   }
 }
 
@@ -161,8 +196,9 @@ void PeisWatch::overdue(std::uint16_t base, Messages& messages, bool up, std::in
     if (!message.owed || now_us <= context_.due_us(base, since_us, line) + confirmed_us) continue;
     message.owed = false;
     context_.report(up ? "N8-PEIS"_rule : "N8-INCOMING"_rule,
-                    waiting > kPeisCrowd ? Severity::kInconclusive : Severity::kFail, message.place,
-                    base,
+                    waiting > kPeisCrowd || context_.full(base, since_us) ? Severity::kInconclusive
+                                                                          : Severity::kFail,
+                    message.place, base,
                     {"The base station got " + name_of(message.net) + " from " +
                          (up ? "its sink and did not put it on PEIS."
                              : "PEIS and did not hand it to its sink."),

@@ -20,9 +20,14 @@ class PeisWatch {
   void begin_life(std::uint16_t base) { bases_[base] = Base{}; }
   /// Notes that the island of `base` is another one now.
   void moved(std::uint16_t base) { bases_[base].moved = true; }
-  /// Takes a message from the sink of `base`, in `island`; `surely` if a log has it.
+  /// Takes a message from the sink of `base`, in `island`; unless it is on, nothing is owed.
   void came_up(std::uint16_t base, std::uint16_t island, const Observation& seen, const Net& net,
-               bool surely);
+               bool on);
+  /// Notes that the message came up while the serial interface of `base` was switched off, and
+  /// whether for so long (`off`) that it is not to be received.
+  void came_while_off(std::uint16_t base, const Net& net, bool off);
+  /// Notes that the serial interface of `base` is switched: while it is off what waits stays.
+  void switched(std::uint16_t base, bool on, std::int64_t now_us);
   /// Notes that the log gives `base` a message that came up before.
   void surely_up(std::uint16_t base, const Net& net, std::int64_t now_us);
   /// Judges a message that `base` gives to PEIS; `own` is its address. Returns whether it is one of
@@ -58,6 +63,9 @@ class PeisWatch {
     Place place;
     bool owed = false;  ///< Surely received, to be passed on, and not yet seen to be.
     bool passed = false;
+    bool came = true;   ///< The base station may have it: a whole log says what it was given.
+    bool off = false;   ///< It came while its interface was switched off.
+    bool held = false;  ///< It is owed once its interface is on.
     std::int64_t given_us = -1;  ///< When the base station had it, by its log.
   };
   using Messages = Ring<Message, kRoom>;

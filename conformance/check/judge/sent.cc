@@ -94,8 +94,14 @@ void Originals::asks_to_join(std::uint16_t node) {
   for (std::size_t i = 0; i < sent_[node].size(); ++i) sent_[node].newest(i).acked = true;
 }
 
-// Only a log that has all that the node sends shows that a message never left.
 void Originals::ends(std::uint16_t node, std::int64_t end_us, const InterfaceWatch& interfaces) {
+  judge_unsent(node, end_us, interfaces);
+  for (std::size_t i = sent_[node].size(); i-- > 0;) close(node, i, end_us);
+}
+
+// Only a log that has all that the node sends shows that a message never left.
+void Originals::judge_unsent(std::uint16_t node, std::int64_t end_us,
+                             const InterfaceWatch& interfaces) {
   const Device& device = context_.device(node);
   const bool air = context_.options.sniffer_complete && context_.who.sees_air;
   if (!(device.hearing || air) || !context_.run.has_time) return;
@@ -152,6 +158,15 @@ void Originals::told(std::uint16_t node, const Observation& seen,
                      "One result for each call.",
                      {}});
     return;
+  }
+  if (context_.device(node).whole &&
+      seen.place.time_us > context_.due_us(node, call.place.time_us)) {
+    context_.report("N1-SEQ"_rule, Severity::kFail, seen.place, node,
+                    {"send returns " + number(result.seq_num) + " " +
+                         ms_text(seen.place.time_us - call.place.time_us) + " after its call, to " +
+                         text_of(call.send->dest) + ".",
+                     "The number of the message, or 0xFFFF, at once.",
+                     {}});
   }
   call.result = result.seq_num;
   call.told_us = seen.place.time_us;
@@ -342,6 +357,8 @@ Originals::Asked Originals::judge_wrap(std::uint16_t node, const Observation& se
     const bool again = same->left.has_value();
     same->left_us = seen.place.time_us;
     same->left = net.seq_num;
+    // What is for every island may take either line (decision 114).
+    if (net.dest.pid == machine::kBroadcastPid) same->line = link;
     judge_late(node, seen, *same, link);
     const std::int64_t called_us = same->place.time_us;
     const bool during = !same->result;  // It leaves before the call returns.
@@ -503,7 +520,7 @@ void Originals::judge_number(std::uint16_t node, const Observation& seen, const 
     Sent& before = ring.newest(i);
     if (before.net.seq_num != net.seq_num) continue;
     const bool awaits =
-        before.net.reliable == 1 && !before.acked && before.net.sound && !before.net.broadcast() &&
+        before.net.reliable == 1 && !before.acked && before.net.sound &&
         before.net.trans_id == component::kConnless && seen.place.timed() && before.place.timed() &&
         now - before.place.time_us < context_.ack_timeout_us() - context_.early_us();
     const bool same =
@@ -542,47 +559,9 @@ void Originals::judge_number(std::uint16_t node, const Observation& seen, const 
   context_.findings.kept("N12-REUSE"_rule);
 }
 
-void Originals::close(std::uint16_t node, std::size_t newest, std::int64_t now_us) {
-  Ring<Sent, kRoom>& ring = sent_[node];
-  const Sent& sent = ring.newest(newest);
-  if (!context_.device(node).application || !sent.place.timed() || sent.told > 0) return;
-  if (sent.reused) return;
-  const bool awaits =
-      sent.net.reliable == 1 && sent.net.sound && sent.net.trans_id == component::kConnless;
-  if (!awaits || context_.profile().ack_timeout_ticks == 0) return;
-  for (std::size_t i = 0; i < newest; ++i) {  // Sent again by its application: one event for both.
-    if (ring.newest(i).net.seq_num == sent.net.seq_num) return;
-  }
-  const std::int64_t response_us = context_.response_us();
-  if (sent.given_us >= 0 && now_us - sent.given_us > response_us) {
-    context_.report("T3-SUCCESS"_rule, Severity::kFail, sent.place, node,
-                    {"The node was given the ack of " + name_of(sent.net) + " " +
-                         ms_text(sent.given_us - sent.place.time_us) +
-                         " after it, and its application is told nothing.",
-                     "receive_ack(success).",
-                     {}});
-    return;
-  }
-  // An unstated timeout may be longer than what is assumed (decision 110); for ever it is not.
-  const std::int64_t waited = now_us - sent.place.time_us;
-  const std::int64_t timeouts = context_.run.all_stated ? 1 : kTimeouts;
-  if (waited <= timeouts * context_.ack_timeout_us() + 2 * response_us) return;
-  context_.report("T3-ONCE"_rule,
-                  context_.ack_timeout_stated() || waited > kForever * context_.ack_timeout_us()
-                      ? Severity::kFail
-                      : Severity::kInconclusive,
-                  sent.place, node,
-                  {"No receive_ack for " + name_of(sent.net) + " in " + ms_text(waited) + ".",
-                   "receive_ack(failure) at the timeout, or receive_ack(success) before.",
-                   {}});
-}
-
 void Originals::finish(std::int64_t end_us, const InterfaceWatch& interfaces) {
   for (std::size_t node = 0; node < sent_.size(); ++node) {
     ends(static_cast<std::uint16_t>(node), end_us, interfaces);
-    for (std::size_t i = sent_[node].size(); i-- > 0;) {
-      close(static_cast<std::uint16_t>(node), i, end_us);
-    }
     note_stale(context_, static_cast<std::uint16_t>(node), "WIRE-NET-PAYLOAD"_rule, stale_[node],
                "On the air a message has ");
   }

@@ -17,6 +17,7 @@ struct Sent {
   Net net;
   Place place;
   bool acked = false;          ///< Its ack reached the node, or may have.
+  bool ack_came = false;       ///< By a log the node was given an ack with its number.
   std::int64_t given_us = -1;  ///< When its ack surely reached the node, by a log.
   std::uint8_t told = 0;       ///< receive_ack events, by a log.
   bool reused = false;         ///< Its number was used again, so that events do not tell which.
@@ -96,6 +97,7 @@ class Originals {
   void judge_late(std::uint16_t node, const Observation& seen, const Call& call,
                   machine::Link link);
   bool waits(std::uint16_t node, std::int64_t since_us, std::int64_t now_us);
+  void judge_unsent(std::uint16_t node, std::int64_t end_us, const InterfaceWatch& interfaces);
   void judge_missing(std::uint16_t node, Call& call, std::int64_t now_us);
   std::size_t waiting(std::uint16_t node, machine::Link line) const;
   void judge_refused(std::uint16_t node, const Observation& seen, const Call& call);

@@ -26,6 +26,7 @@ void Originals::ack_given(std::uint16_t node, const Net& ack, std::int64_t now_u
                          sent.net.src == ack.dest && sent.net.dest == ack.src &&
                          sent.net.app_id == ack.app_id;
     if (matches && sent.given_us < 0) sent.given_us = now_us;
+    if (sent.net.seq_num == acked) sent.ack_came = true;
     if (sent.net.seq_num == acked && sent.told == 0) awaited = true;
   }
   if (!awaited) strays_us_[node] = now_us;
@@ -109,19 +110,20 @@ void Originals::told(std::uint16_t node, const Observation& seen, const machine:
   }
   // An implementation may start its timer at either.
   const std::int64_t waited = now - match->called_us;
-  const std::int64_t latest = context_.due_us(
-      node, match->place.time_us + context_.ack_timeout_us() + context_.response_us());
-  const std::int64_t since_ack = match->given_us < 0 ? 0 : now - match->given_us;
+  const std::int64_t latest =
+      context_.due_us(node, match->place.time_us + context_.ack_timeout_us());
   const bool overdue = match->given_us >= 0 && now > context_.due_us(node, match->given_us);
+  // An ack on the air is none to a node whose whole log does not give it that.
+  const bool acked = match->acked && (match->ack_came || !context_.device(node).whole);
   const bool too_late = seen.place.timed() && match->place.timed() && now > latest;
   if (!ack.success && !overdue && match->acked && ill_acked(node, match->net)) {
     context_.findings.kept("T3-SUCCESS"_rule);
-  } else if (ack.success ? overdue : since_ack > context_.response_us()) {
+  } else if (overdue) {
     context_.report("T3-SUCCESS"_rule, Severity::kFail, seen.place, node,
                     {what + ", " + ms_text(now - match->given_us) + " after its ack had come.",
                      "receive_ack(success) when the ack came.",
                      {}});
-  } else if (ack.success && match->acked && !match->net.broadcast() &&
+  } else if (ack.success && acked && !match->net.broadcast() &&
              !rightly_acked(node,
                             match->net)) {  // Of a broadcast any ack may count (decision 114).
     const std::uint16_t acker = context_.mote_of_am[match->net.dest.devid];
@@ -135,7 +137,7 @@ void Originals::told(std::uint16_t node, const Observation& seen, const machine:
                          number(match->net.app_id) + ".",
                      "An ack counts from the message's destination, with its APPID.",
                      {}});
-  } else if (ack.success && !match->acked) {
+  } else if (ack.success && !acked) {
     const Device& device = context_.device(node);  // A mote hears by radio alone.
     const bool all = device.hearing && device.role == Role::kMote;
     context_.report(strays_us_[node] >= match->place.time_us ? "T3-MATCH"_rule : "T3-SUCCESS"_rule,
@@ -161,6 +163,41 @@ void Originals::told(std::uint16_t node, const Observation& seen, const machine:
   } else {
     context_.findings.kept(ack.success ? "T3-SUCCESS"_rule : "T3-TIMEOUT"_rule);
   }
+}
+
+void Originals::close(std::uint16_t node, std::size_t newest, std::int64_t now_us) {
+  Ring<Sent, kRoom>& ring = sent_[node];
+  const Sent& sent = ring.newest(newest);
+  if (!context_.device(node).application || !sent.place.timed() || sent.told > 0) return;
+  if (sent.reused) return;
+  const bool awaits =
+      sent.net.reliable == 1 && sent.net.sound && sent.net.trans_id == component::kConnless;
+  if (!awaits || context_.profile().ack_timeout_ticks == 0) return;
+  for (std::size_t i = 0; i < newest; ++i) {  // Sent again by its application: one event for both.
+    if (ring.newest(i).net.seq_num == sent.net.seq_num) return;
+  }
+  if (sent.given_us >= 0 && now_us > context_.due_us(node, sent.given_us)) {
+    context_.report("T3-SUCCESS"_rule, Severity::kFail, sent.place, node,
+                    {"The node was given the ack of " + name_of(sent.net) + " " +
+                         ms_text(sent.given_us - sent.place.time_us) +
+                         " after it, and its application is told nothing.",
+                     "receive_ack(success).",
+                     {}});
+    return;
+  }
+  // An unstated timeout may be longer than what is assumed (decision 110); for ever it is not.
+  const std::int64_t waited = now_us - sent.place.time_us;
+  const std::int64_t timeouts = context_.run.all_stated ? 1 : kTimeouts;
+  const std::int64_t timeout_us = timeouts * context_.ack_timeout_us();
+  if (now_us <= context_.due_us(node, sent.place.time_us + timeout_us)) return;
+  context_.report("T3-ONCE"_rule,
+                  context_.ack_timeout_stated() || waited > kForever * context_.ack_timeout_us()
+                      ? Severity::kFail
+                      : Severity::kInconclusive,
+                  sent.place, node,
+                  {"No receive_ack for " + name_of(sent.net) + " in " + ms_text(waited) + ".",
+                   "receive_ack(failure) at the timeout, or receive_ack(success) before.",
+                   {}});
 }
 
 }  // namespace rubric::check

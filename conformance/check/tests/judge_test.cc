@@ -445,6 +445,17 @@ TEST(Judge, AMessageFromAnotherAddressIsJudgedSinceTheLastFromItsOwn) {
   }
 }
 
+// A host sends again what was not confirmed, and the sink acks what comes to it each time.
+TEST(Judge, AnAckOfWhatCameAgainIsPrompt) {
+  Script script;
+  script.join(0, 11, 2, 100);
+  const NetFields net = reliable({11, kNullDevid}, {11, 1}, 5);
+  script.down(2000, net).confirm(false).up(2010, net.ack(9).forwarded());
+  --script.serial_number;
+  script.down(3000, net).confirm().up(3010, net.ack(10).forwarded());
+  EXPECT_EQ(broken_in(judge(script.run, {})), "");
+}
+
 // More senders than are followed: their frames blame nobody, and the report says so.
 TEST(Judge, SaysWhoIsNotFollowed) {
   constexpr std::uint16_t kFollowed = 4096;
