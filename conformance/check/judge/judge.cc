@@ -98,6 +98,7 @@ void Judge::look(std::uint32_t index) {
     case Kind::kReboot:
       if (mark.device == kNobody) break;
       joins_.rebooted(mark.device, seen.place.time_us);
+      join_calls_.closes(mark.device, seen.place.time_us);
       announcements_.ends(mark.device, seen.place.time_us);
       originals_.ends(mark.device, seen.place.time_us, interfaces_);
       begin_life(mark.device, INT64_MAX);
