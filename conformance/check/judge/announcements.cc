@@ -82,7 +82,8 @@ void Announcements::announce(SinkWatch& sink, const Place& at, machine::Address 
     bool& owes = notice ? next.owes_notice : next.owes_report;
     if (!owes) continue;
     owes = false;
-    if (!stored || *stored != descriptor) stored = h.member->descriptor;
+    // One that has forgotten the mote since still owes what it had to say of it.
+    if (h.member && (!stored || *stored != descriptor)) stored = h.member->descriptor;
     next_.push_back(next);
   }
   if (watch.report_due && !notice) {
@@ -245,11 +246,10 @@ void Announcements::overdue_reports(SinkWatch& sink, std::int64_t end_us) {
     sink.set_due(watch, false);
     const auto owes = [](const SinkHypothesis& h) { return !h.unknown && h.owes_report; };
     if (!std::all_of(watch.set.begin(), watch.set.end(), owes)) continue;
-    // With a full list, even of members from before the capture, nothing is owed.
-    if (joins_.listed(sink) >= context_.profile().members_max) continue;
+    if (watch.found_full) continue;
     context_.report(
         "J6-REPORT"_rule,
-        room && !context_.who.damaged(watch.admitted.time_us, now_us)
+        room && !may_be_lost(sink, watch) && !context_.who.damaged(watch.admitted.time_us, now_us)
             ? context_.on_line(sink.device, Severity::kFail)
             : Severity::kInconclusive,
         watch.admitted, sink.device,
@@ -263,6 +263,17 @@ void Announcements::overdue_reports(SinkWatch& sink, std::int64_t end_us) {
   }
 }
 
+// Returns whether the last ack_join may have found the incoming buffer full (decision 122): of more
+// messages than go into it, or of what waits since longer ago than crowded() looks back.
+bool Announcements::may_be_lost(const SinkWatch& sink, const PairWatch& watch) const {
+  const std::int64_t at_us = watch.admitted.time_us;
+  const std::int64_t before_us = at_us - 2 * context_.response_us();
+  constexpr auto kRadio = machine::Link::kRadio;
+  return context_.crowded(sink.device, at_us) ||
+         (context_.busy(sink.device, before_us, before_us, kRadio) &&
+          context_.busy(sink.device, at_us, at_us, kRadio));
+}
+
 // Reports an ack_join that by a log the sink surely got and its application never heard of.
 void Announcements::unannounced(const SinkWatch& sink, std::uint16_t mote_am,
                                 const PairWatch& watch, std::int64_t end_us) {
@@ -273,8 +284,10 @@ void Announcements::unannounced(const SinkWatch& sink, std::uint16_t mote_am,
   if (end_us <= context_.due_us(sink.device, watch.admitted_us, machine::Link::kRadio)) return;
   const auto owes = [](const SinkHypothesis& h) { return !h.unknown && h.owes_notice; };
   if (!std::all_of(watch.set.begin(), watch.set.end(), owes)) return;
-  if (joins_.listed(sink) > context_.profile().members_max) return;
-  context_.report("J6-ADD"_rule, Severity::kFail, watch.admitted, sink.device,
+  if (watch.found_full) return;
+  context_.report("J6-ADD"_rule,
+                  may_be_lost(sink, watch) ? Severity::kInconclusive : Severity::kFail,
+                  watch.admitted, sink.device,
                   {"The sink was given the ack_join of mote " + number(mote_am) +
                        " with the number that it had answered, and does not list the mote: no "
                        "moteJoined followed within " +

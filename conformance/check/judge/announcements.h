@@ -4,6 +4,8 @@
 // Decides: whether each of them follows an ack_join that the sink had to accept (J6), by the
 // hypotheses of sink_join.h, and whether one is missing. A serial_joined is due within the response
 // time after the ack_join, or after the serial line was switched on again (by a whole log).
+// Where the ack_join may have found the incoming buffer full (decision 122), one that is missing is
+// inconclusive; where the list may have been full when it came, nothing is owed.
 #pragma once
 
 #include <cstdint>
@@ -26,8 +28,8 @@ class Announcements {
   void serial_set(std::uint16_t sink, bool on, std::int64_t now_us);
   /// Judges what the sink owes its host, by a log that has all that it does until then.
   void overdue(std::uint16_t sink, std::int64_t now_us);
-  /// Judges what its application was never told when the sink loses its power, or its island, or
-  /// forgets a mote.
+  /// Judges what its application was never told when the sink loses its power, or is told its
+  /// island, or forgets a mote.
   void ends(std::uint16_t sink, std::int64_t now_us);
   void forgets(std::uint16_t sink, std::uint16_t mote_am, std::int64_t now_us);
   void finish(std::int64_t end_us);
@@ -42,6 +44,7 @@ class Announcements {
                      const machine::Admission& announced, bool notice, bool astray);
   /// Reports each serial_joined that is overdue; `end`: no frame of the sink comes any more.
   void overdue_reports(SinkWatch& sink, std::int64_t end_us);
+  bool may_be_lost(const SinkWatch& sink, const PairWatch& watch) const;
   void unannounced(const SinkWatch& sink, std::uint16_t mote_am, const PairWatch& watch,
                    std::int64_t end_us);
 

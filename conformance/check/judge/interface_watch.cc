@@ -39,7 +39,9 @@ void InterfaceWatch::called(std::uint16_t device, const Observation& seen) {
   }
   if (const auto* const get = std::get_if<machine::GetInterface>(seen.call)) {
     Interface* const interface = find(node, get->link);
-    if (interface != nullptr) interface->asked = seen.place;
+    if (interface == nullptr) return;
+    judge_untold(device, *interface, seen.place.time_us);
+    interface->asked = seen.place;
     return;
   }
   const auto* const set = std::get_if<machine::SetInterface>(seen.call);
@@ -150,20 +152,24 @@ void InterfaceWatch::own_message(std::uint16_t device, const Observation& seen,
   context_.findings.kept("N10-ON"_rule);
 }
 
+// Reports a question for the state that has had no answer until `now_us`.
+void InterfaceWatch::judge_untold(std::uint16_t device, const Interface& interface,
+                                  std::int64_t now_us) {
+  // Only a whole log surely has the answer.
+  if (!interface.asked || !context_.device(device).whole || !context_.run.has_time) return;
+  if (now_us <= context_.due_us(device, interface.asked->time_us)) return;
+  context_.report("N10-STATE"_rule, Severity::kFail, *interface.asked, device,
+                  {"The application asked whether an interface is on, and was told nothing.",
+                   "Its state.",
+                   {}});
+}
+
 void InterfaceWatch::finish(std::int64_t end_us) {
   if (!context_.run.has_time) return;
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     const auto device = static_cast<std::uint16_t>(i);
     const Node& node = nodes_[i];
-    for (const Interface& interface : node.interfaces) {
-      // Only a whole log surely has the answer.
-      if (!interface.asked || !context_.device(device).whole) continue;
-      if (end_us <= context_.due_us(device, interface.asked->time_us)) continue;
-      context_.report("N10-STATE"_rule, Severity::kFail, *interface.asked, device,
-                      {"The application asked whether an interface is on, and was told nothing.",
-                       "Its state.",
-                       {}});
-    }
+    for (const Interface& interface : node.interfaces) judge_untold(device, interface, end_us);
     const bool busy = !context_.busy_times(device).empty();
     if (!node.awaited || busy || end_us - node.accepted.time_us <= context_.response_us()) continue;
     const Severity severity = context_.device(device).hearing

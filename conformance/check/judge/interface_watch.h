@@ -51,6 +51,7 @@ class InterfaceWatch {
 
   Node& look(std::uint16_t node);
   static Interface* find(Node& node, machine::Link link);
+  void judge_untold(std::uint16_t node, const Interface& interface, std::int64_t now_us);
   void judge_off(std::uint16_t node, const Observation& seen, Node& watch, std::uint16_t seq_num);
 
   Context& context_;

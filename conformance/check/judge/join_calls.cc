@@ -30,6 +30,7 @@ void JoinCalls::begin_life(std::uint16_t mote) {
 
 bool JoinCalls::request(std::uint16_t mote, const Observation& seen, const Request& request) {
   Calls& calls = calls_[mote];
+  judge_silent(mote, seen.place.time_us);
   calls.asks = false;
   const std::optional<Request> before = std::exchange(calls.asked, request);
   const Place before_at = std::exchange(calls.asked_at, seen.place);
@@ -87,6 +88,7 @@ void JoinCalls::called(std::uint16_t mote, const Observation& seen,
   Calls& calls = calls_[mote];
   ends(mote, seen.place.time_us);
   calls.fresh = calls.open == 0;
+  if (calls.fresh) motes_.called(mote, seen.place.time_us);
   // A member, and one whose earlier call is open, refuses at once.
   calls.refusable =
       calls.open > 0 || std::ranges::any_of(motes_.set(mote), [](const MoteHypothesis& h) {
@@ -157,6 +159,7 @@ void JoinCalls::told(std::uint16_t mote, const Observation& seen, const machine:
   }
   if (!joined.success) judge_silent(mote, now);
   if (calls.open > 0) --calls.open;
+  if (calls.open > 0) motes_.called(mote, now);  // One that waited begins.
   motes_.link_told(mote, now);
   const std::vector<MoteHypothesis> before = set;
   Said said;
@@ -211,7 +214,7 @@ void JoinCalls::told(std::uint16_t mote, const Observation& seen, const machine:
                                   now - calls.called.time_us <= context_.response_us());
   const auto fits = [&](const MoteHypothesis& h) {
     return h.unknown || h.join.phase == Phase::kOutside ||
-           (!h.linked && motes_.may_have_failed(h, now));
+           (!h.linked && motes_.may_have_failed(mote, h, now));
   };
   const auto member = [](const MoteHypothesis& h) {
     return !h.unknown && h.join.phase == Phase::kMember && h.told;
@@ -352,28 +355,32 @@ void JoinCalls::judge_over(std::uint16_t mote, std::int64_t now_us) {
                    {}});
 }
 
+void JoinCalls::closes(std::uint16_t mote, std::int64_t end_us) {
+  const Device& device = context_.device(mote);
+  judge_silent(mote, end_us);
+  if (calls_[mote].off_since_us >= 0) radio_set(mote, true, end_us);  // Counts how long it was off.
+  const std::vector<MoteHypothesis>& set = std::as_const(motes_).set(mote);
+  const bool known = set.size() == 1 && !set[0].unknown;
+  if (device.role != machine::Role::kMote || !device.application || !known) return;
+  const MoteHypothesis& h = set[0];
+  if (h.join.phase == Phase::kMember) judge_member(mote, h, end_us);
+  if (h.join.phase != Phase::kJoining) return;
+  if (h.first_request_us < 0) return;                         // The begin is unknown.
+  if (calls_[mote].logged && calls_[mote].open == 0) return;  // It had its event.
+  const std::int64_t over_us =
+      device.whole ? last_expiry_us(mote, h) : h.first_request_us + context_.join_call_us();
+  if (end_us <= context_.due_us(mote, over_us)) return;
+  Place at;
+  at.time_us = h.first_request_us;
+  context_.report("J8-FAIL"_rule, Severity::kFail, at, mote,
+                  {"The join that began at " + ms_text(h.first_request_us) + " with number " +
+                       number(h.join.seq_num) + " ended without any joined event.",
+                   "joined(FAIL), not later than the fifth expiry.",
+                   {}});
+}
+
 void JoinCalls::finish(std::int64_t end_us) {
-  for (std::size_t i = 0; i < calls_.size(); ++i) {
-    const auto mote = static_cast<std::uint16_t>(i);
-    const Device& device = context_.device(mote);
-    judge_silent(mote, end_us);
-    const std::vector<MoteHypothesis>& set = std::as_const(motes_).set(mote);
-    const bool known = set.size() == 1 && !set[0].unknown;
-    if (device.role != machine::Role::kMote || !device.application || !known) continue;
-    const MoteHypothesis& h = set[0];
-    if (h.join.phase == Phase::kMember) judge_member(mote, h, end_us);
-    if (h.join.phase != Phase::kJoining) continue;
-    if (end_us <= h.first_request_us + context_.join_call_us() + context_.response_us()) continue;
-    if (h.first_request_us < 0) continue;                         // The begin is unknown.
-    if (calls_[mote].logged && calls_[mote].open == 0) continue;  // It had its event.
-    Place at;
-    at.time_us = h.first_request_us;
-    context_.report("J8-FAIL"_rule, Severity::kFail, at, mote,
-                    {"The join that began at " + ms_text(h.first_request_us) + " with number " +
-                         number(h.join.seq_num) + " ended without any joined event.",
-                     "joined(FAIL), not later than the fifth expiry.",
-                     {}});
-  }
+  for (std::size_t i = 0; i < calls_.size(); ++i) closes(static_cast<std::uint16_t>(i), end_us);
 }
 
 }  // namespace rubric::check

@@ -23,6 +23,8 @@ class JoinCalls {
   void called(std::uint16_t mote, const Observation& seen, const machine::JoinIsland& call);
   void told(std::uint16_t mote, const Observation& seen, const machine::Joined& joined);
   void radio_set(std::uint16_t mote, bool on, std::int64_t now_us);
+  /// Judges what the application was never told when a life of the mote ends, or the log.
+  void closes(std::uint16_t mote, std::int64_t end_us);
   void finish(std::int64_t end_us);
 
  private:

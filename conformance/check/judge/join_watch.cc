@@ -147,8 +147,11 @@ bool JoinWatch::still_owed(std::uint16_t node, const Debt& debt) {
         return h.join.phase == Phase::kMember && h.acks_seen == 0 && h.accepted_us == from &&
                h.join.seq_num == debt.seq_num;
       }
+      // Requests that had to wait since the call may have been used up.
+      const std::int64_t waited =
+          (h.first_request_us - motes_.began_us(node, h)) / context_.join_period_us();
       return h.join.phase == Phase::kJoining && h.last_request_us == from &&
-             h.join.requests < requests_min;
+             h.join.requests + waited < requests_min;
     };
     const std::vector<MoteHypothesis>& set = motes_.set(node);
     return !set.empty() && std::all_of(set.begin(), set.end(), owes);

@@ -95,6 +95,7 @@ void Judge::look(std::uint32_t index) {
     case Kind::kReboot:
       if (mark.device == kNobody) break;
       joins_.rebooted(mark.device, seen.place.time_us);
+      join_calls_.closes(mark.device, seen.place.time_us);
       announcements_.ends(mark.device, seen.place.time_us);
       originals_.ends(mark.device, seen.place.time_us, interfaces_);
       begin_life(mark.device, INT64_MAX);
@@ -462,11 +463,13 @@ void Judge::serial(std::uint32_t index, const Observation& seen, const Mark& mar
   }
   if (const std::int32_t id = set_island_id(seen.frame); id >= 0 && seen.to_mote) {
     if (!seen.received) own_island_.erase(mark.device);  // It is what it now tells its sink.
-    if (interfaces_.switched_off(sink, machine::Link::kSerial)) return;  // It hears nothing.
     const auto island = static_cast<std::uint16_t>(id);
+    if (interfaces_.switched_off(sink, machine::Link::kSerial)) {  // It hears nothing.
+      return sinks_.missed_island(sink, island);
+    }
     const bool sure = serial_acked(run_, index) || mark.receiver == sink;
     acks_.interrupted(sink, seen.place.time_us);
-    if (sinks_.island(sink) != island) announcements_.ends(sink, seen.place.time_us);
+    announcements_.ends(sink, seen.place.time_us);
     sinks_.set_island(sink, island, seen.place, sure);
     forwarding_.set_island(sink, island, seen.place.time_us, sure);
     return;

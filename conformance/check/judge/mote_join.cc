@@ -49,15 +49,24 @@ std::uint8_t MoteJoins::expiries_min() const {
   return std::min<std::uint8_t>(4, context_.profile().join_requests_max);
 }
 
-bool MoteJoins::may_have_failed(const MoteHypothesis& h, std::int64_t now_us) const {
+std::int64_t MoteJoins::began_us(std::uint16_t mote, const MoteHypothesis& h) const {
+  const std::int64_t called_us = motes_[mote].called_us;
+  const bool its = called_us >= 0 && called_us < h.first_request_us;
+  const bool waited =
+      its && context_.busy(mote, called_us, h.first_request_us, machine::Link::kRadio);
+  return waited ? called_us : h.first_request_us;
+}
+
+bool MoteJoins::may_have_failed(std::uint16_t mote, const MoteHypothesis& h,
+                                std::int64_t now_us) const {
   const std::int64_t expiries = expiries_min() * context_.join_period_us();
-  return now_us - h.first_request_us >= expiries - context_.early_us();
+  return now_us - began_us(mote, h) >= expiries - context_.early_us();
 }
 
 // Applies a request to a hypothesis. Returns false if the hypothesis does not allow it.
-bool MoteJoins::next_request(const MoteHypothesis& h, std::uint16_t id, std::int64_t now_us,
+bool MoteJoins::next_request(std::uint16_t mote, const MoteHypothesis& h, std::int64_t now_us,
                              const Request& request, std::vector<MoteHypothesis>& out) {
-  machine::JoinContext join_context = context_.join_context(id, 0, now_us);
+  machine::JoinContext join_context = context_.join_context(context_.device(mote).am, 0, now_us);
   const auto fresh_call = [&] {
     MoteHypothesis next;
     machine::call_join(next.join, join_context, request.descriptor, request.seq_num,
@@ -90,14 +99,13 @@ bool MoteJoins::next_request(const MoteHypothesis& h, std::uint16_t id, std::int
     }
     any = true;
   }
-  if (request.seq_num != h.join.seq_num && may_have_failed(h, now_us)) any = fresh_call();
+  if (request.seq_num != h.join.seq_num && may_have_failed(mote, h, now_us)) any = fresh_call();
   return any;
 }
 
 void MoteJoins::request(std::uint16_t mote, const Observation& seen, const Request& request,
                         bool as_member) {
   MoteWatch& watch = motes_[mote];
-  const Device& device = context_.device(mote);
   const std::int64_t now = seen.place.time_us;
   if (seen.frame.dest != context_.sink_am) {
     context_.report("J1-DEST"_rule, Severity::kFail, seen.place, mote,
@@ -118,7 +126,7 @@ void MoteJoins::request(std::uint16_t mote, const Observation& seen, const Reque
     next_.push_back(asked);
   }
   for (const MoteHypothesis& h : watch.set) {
-    next_request(h, device.am, now, request, next_);
+    next_request(mote, h, now, request, next_);
   }
   if (next_.empty()) {
     refuse_request(mote, seen, request, as_member);

@@ -80,6 +80,7 @@ struct MoteWatch {
   std::optional<Reply> wrong_reply;  ///< The last that its request had not asked for.
   Place wrong_place;
   std::int64_t booted_us = -1;  ///< By its log; -1: it shows no start.
+  std::int64_t called_us = -1;  ///< Its last call of joinIsland began, by its log; -1: none did.
 };
 
 /// Returns whether the mote of that address is to ignore such an offer (J4-ADDRESS).
@@ -111,8 +112,13 @@ class MoteJoins {
   bool stray_offer(std::uint16_t mote) const { return motes_[mote].wrong_reply.has_value(); }
   /// Returns at which expiry of its timer a call may fail first (decision 101).
   std::uint8_t expiries_min() const;
-  /// Returns whether a call that made its first request then may have failed by now.
-  bool may_have_failed(const MoteHypothesis& h, std::int64_t now_us) const;
+  /// Notes a call of joinIsland that begins now.
+  void called(std::uint16_t mote, std::int64_t now_us) { motes_[mote].called_us = now_us; }
+  /// Returns when the timer of a call may have begun to run: with its first request, or with the
+  /// call itself where that request had to wait for a busy channel.
+  std::int64_t began_us(std::uint16_t mote, const MoteHypothesis& h) const;
+  /// Returns whether such a call may have failed by now.
+  bool may_have_failed(std::uint16_t mote, const MoteHypothesis& h, std::int64_t now_us) const;
   /// Returns the hypotheses for a finding, the furthest first, each with what it misses.
   std::vector<Hypothesis> explanations(const std::vector<MoteHypothesis>& set,
                                        const std::string& miss) const;
@@ -129,7 +135,7 @@ class MoteJoins {
   static constexpr std::size_t kSetMax = 256;
   static constexpr std::uint8_t kAckJoinsMax = 20;
 
-  bool next_request(const MoteHypothesis& h, std::uint16_t id, std::int64_t now_us,
+  bool next_request(std::uint16_t mote, const MoteHypothesis& h, std::int64_t now_us,
                     const Request& request, std::vector<MoteHypothesis>& out);
   void refuse_request(std::uint16_t mote, const Observation& seen, const Request& request,
                       bool as_member);

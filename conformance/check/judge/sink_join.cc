@@ -83,7 +83,7 @@ void SinkJoins::begin_life(std::uint16_t sink, std::int64_t since_us) {
   if (!device.hearing) return;  // A capture does not show with which island it begins.
   watch->island = device.island;
   watch->former_island = kNoIsland;
-  watch->ignored = -1;
+  watch->ignored = watch->unheard = -1;
   watch->island_set = false;
 }
 
@@ -112,15 +112,29 @@ void SinkJoins::set_island(std::uint16_t sink, std::uint16_t island, const Place
                      "The sink forgets its members.",
                      {}});
   }
-  // It may have forgotten its members, or not.
-  SinkHypothesis unknown;
-  unknown.unknown = true;
   for (auto& [am, pair] : watch->motes) {
     pair.cut_off = surely_lists(pair);
-    pair.set.assign(1, unknown);
+    may_forget(*watch, pair, at);
     watch->set_due(pair, false);
   }
   watch->reported_us = -1;
+}
+
+// Takes a sink of another island to keep what it knows of the mote, or to forget its members, or
+// with them the requests that it stored, or to start anew (decision 123). What it owes by then may
+// still be on its way.
+void SinkJoins::may_forget(SinkWatch& sink, PairWatch& pair, const Place& at) {
+  next_.clear();
+  for (SinkHypothesis h : pair.set) {
+    next_.push_back(h);
+    if (h.unknown) continue;
+    h.member.reset();
+    next_.push_back(h);
+    h.pending.reset();
+    next_.push_back(h);
+    next_.push_back(SinkHypothesis{});
+  }
+  keep(sink, pair, next_, at);
 }
 
 bool SinkJoins::keeps_former(SinkWatch& sink, std::uint16_t shown, const Place& at,
@@ -145,6 +159,10 @@ bool SinkJoins::keeps_former(SinkWatch& sink, std::uint16_t shown, const Place& 
   return true;
 }
 
+void SinkJoins::missed_island(std::uint16_t sink, std::uint16_t island) {
+  if (SinkWatch* const watch = find(sink)) watch->unheard = island;
+}
+
 void SinkJoins::configured(std::uint16_t sink, const machine::Frame& frame) {
   SinkWatch* const watch = find(sink);
   const auto config = rubicon::ConfigView::parse(frame.payload);
@@ -152,6 +170,7 @@ void SinkJoins::configured(std::uint16_t sink, const machine::Frame& frame) {
 }
 
 ReqId SinkJoins::wrong_island(const SinkWatch& sink, std::uint16_t other, ReqId otherwise) {
+  if (sink.unheard == other) return "N10-OFF"_rule;
   if (sink.ignored == other) return "N9-OTHER"_rule;
   return sink.island_set ? "N9-SET"_rule : otherwise;
 }
@@ -386,46 +405,6 @@ void SinkJoins::reply(std::uint16_t sink_device, const Observation& seen, const 
   watch.answered_seq = reply.seq_num;
 }
 
-void SinkJoins::judge_clock(SinkWatch& sink, const Observation& seen, const Reply& reply) {
-  constexpr std::int64_t kOffMs = 1000;
-  constexpr std::int64_t kBehindMs = 300;  // Of a reply that waited for the channel.
-  const std::int64_t now = seen.place.time_us;
-  const bool stepped = check::stepped(context_.run.steps, sink.clock_us, now);
-  if (!sink.has_clock || stepped || reply.time_ms != sink.clock_ms) sink.still_us = now;
-  if (sink.has_clock && seen.place.timed() && sink.clock_us >= 0 && !stepped) {
-    std::int64_t passed_ms = (now - sink.clock_us) / 1000;
-    const std::int64_t grown_ms = grown_ms_of(sink.clock_ms, reply.time_ms, passed_ms);
-    // Replies that follow each other fast stand still together.
-    if (grown_ms == 0 && passed_ms < kOffMs) passed_ms = (now - sink.still_us) / 1000;
-    // A clock in binary ms runs 2.4 % faster than one in ms.
-    const std::int64_t most_ms = passed_ms + passed_ms * 24 / 1000 + kOffMs;
-    if (grown_ms < passed_ms - passed_ms / 20 - kBehindMs) sink.behind_us = now;
-    Said said;
-    said.text = "cur_time went from " + number(sink.clock_ms) + " to " + number(reply.time_ms) +
-                " while " + number(static_cast<std::uint64_t>(passed_ms)) + " ms passed.";
-    said.expected = "Growth as time passes, within 1 s.";
-    const bool off = grown_ms < passed_ms - kOffMs || grown_ms > most_ms;
-    const bool still = reply.time_ms == sink.clock_ms && passed_ms >= kOffMs;
-    if (still && (off || grown_ms == 0)) {
-      // A step of the recorder's clock looks the same where frames that would show it are missing.
-      context_.report("J3-TIME"_rule,
-                      context_.lossy_air ? Severity::kInconclusive : Severity::kFail, seen.place,
-                      sink.device, std::move(said));
-    } else if (off) {
-      // A reboot starts it anew, which a capture does not show.
-      const bool anew = reply.time_ms <= passed_ms + kOffMs && reply.time_ms < sink.clock_ms &&
-                        !context_.device(sink.device).hearing;
-      context_.report("J3-DRIFT"_rule, anew ? Severity::kInconclusive : Severity::kWeak, seen.place,
-                      sink.device, std::move(said));
-    } else {
-      context_.findings.kept("J3-TIME"_rule);
-    }
-  }
-  sink.has_clock = true;
-  sink.clock_ms = reply.time_ms;
-  sink.clock_us = now;
-}
-
 void SinkJoins::refuse_reply(SinkWatch& sink, PairWatch& watch, const Observation& seen,
                              const Reply& reply) {
   const std::uint16_t am = seen.frame.dest;
@@ -529,6 +508,7 @@ void SinkJoins::ack_join(std::uint16_t, const Observation& seen, const AckJoin& 
     }
     watch.ack = seen.place;
     if (admitted) {
+      watch.found_full = others(sink, watch) >= context_.profile().members_max;
       watch.admitted = seen.place;
       watch.admitted_us = seen.place.time_us + air_us(seen);
     }
@@ -569,6 +549,16 @@ void SinkJoins::keep(SinkWatch& sink, PairWatch& watch, std::vector<SinkHypothes
 std::size_t SinkJoins::listed(const SinkWatch& sink) const {
   std::size_t count = 0;
   for (const auto& [am, watch] : sink.motes) count += surely_lists(watch) ? 1 : 0;
+  return count;
+}
+
+// Returns how many other motes the sink may list.
+std::size_t SinkJoins::others(const SinkWatch& sink, const PairWatch& pair) {
+  std::size_t count = 0;
+  for (const auto& [am, watch] : sink.motes) {
+    const auto may = [](const SinkHypothesis& h) { return h.unknown || h.member; };
+    count += &watch != &pair && std::ranges::any_of(watch.set, may) ? 1 : 0;
+  }
   return count;
 }
 

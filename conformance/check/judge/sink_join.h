@@ -12,8 +12,7 @@
 //
 // How a set changes:
 // - It starts as `unknown`, or, with `start_cold`, as that of a sink that never heard of the mote.
-//   A new island id makes it `unknown`: the sink may forget its members or keep them (decision
-//   123).
+//   A new island id adds hypotheses that forget the mote (decision 123).
 // - A request or an ack_join to the sink's address goes through machine::hear_request() or
 //   machine::hear_ack_join(). A hypothesis splits into received and lost, unless the reception is
 //   certain: by a log, or by a link ack where only one sink is known (decision 127).
@@ -94,12 +93,13 @@ struct PairWatch {
   bool report_due = false;      ///< Surely owed since `admitted`, and not yet complained about.
   bool request_listed = false;  ///< The last request surely came while it was listed.
   bool cut_off = false;         ///< It was listed when the sink's island became another.
+  bool found_full = false;      ///< The list may have been full of others at `admitted`.
 
   /// Takes the sink to list the mote, or not, and to owe nothing.
   void know_nothing() {
     set.assign(1, SinkHypothesis{});
     set.front().unknown = true;
-    answered = report_due = request_listed = cut_off = false;
+    answered = report_due = request_listed = cut_off = found_full = false;
   }
 };
 
@@ -110,6 +110,7 @@ struct SinkWatch {
   bool island_sure = true;  ///< It surely arrived, if so.
   std::uint16_t former_island = kNoIsland;
   std::int32_t ignored = -1;  ///< The value of the last config message that changes nothing.
+  std::int32_t unheard = -1;  ///< The last island that it was set to while its line was off.
   std::int64_t island_set_us = 0;
   std::unordered_map<std::uint16_t, PairWatch> motes;  ///< By AM address.
   bool has_clock = false;                              ///< From the last reply:
@@ -138,6 +139,8 @@ class SinkJoins {
 
   void begin_life(std::uint16_t sink, std::int64_t since_us);
   void set_island(std::uint16_t sink, std::uint16_t island, const Place& at, bool sure);
+  /// Notes SET_ISLAND_ID that its serial line, switched off, is not to hear.
+  void missed_island(std::uint16_t sink, std::uint16_t island);
   /// Notes a config message that changes nothing.
   void configured(std::uint16_t sink, const machine::Frame& frame);
   /// Returns the rule that the sink breaks by being of island `other`.
@@ -184,6 +187,8 @@ class SinkJoins {
 
   /// Adds that the sink may have forgotten the mote, if so much silence was possible.
   void doubt(const Device& sink, PairWatch& watch, const Place& now) const;
+  void may_forget(SinkWatch& sink, PairWatch& pair, const Place& at);
+  static std::size_t others(const SinkWatch& sink, const PairWatch& pair);
   static bool owes(SinkWatch& sink, std::uint16_t mote_am, std::uint16_t seq_num);
   void judge_clock(SinkWatch& sink, const Observation& seen, const Reply& reply);
   void refuse_reply(SinkWatch& sink, PairWatch& watch, const Observation& seen, const Reply& reply);

@@ -110,6 +110,14 @@ TEST(Passive, AClockThatStandsStillFromOneReplyToTheNext) {
   EXPECT_EQ(replies({0xFFFFFF00, 0xFFFFFF00, 0x00000200}), "");  // It wraps.
 }
 
+// A reboot starts it anew, which no capture shows: it may be that old, whatever it said before.
+TEST(Passive, AClockThatMayHaveBegunAnew) {
+  EXPECT_EQ(replies({500, 100'000}, 200'000), "");
+  EXPECT_EQ(replies({90'000, 500}, 200'000), "");
+  EXPECT_EQ(replies({500, 700'000'000}, 60 * 86'400'000.0), "");
+  EXPECT_EQ(replies({150'000, 203'000}, 200'000), " J3-DRIFT");  // It would be older than that.
+}
+
 TEST(Passive, AClockThatWrapsWhileNothingIsSeen) {
   constexpr double kDayMs = 86'400'000;
   const auto all = [](const std::vector<std::uint32_t>& clock, double days) {
@@ -120,7 +128,7 @@ TEST(Passive, AClockThatWrapsWhileNothingIsSeen) {
   EXPECT_EQ(all({10, 889'052'714}, 60), "");
   EXPECT_EQ(all({10, 10}, 30), "J3-TIME");
   EXPECT_EQ(all({10, 10}, 60), "J3-TIME");
-  EXPECT_EQ(all({10, 700'000'000}, 60), " J3-DRIFT");
+  EXPECT_EQ(all({10, 2'700'000'000}, 30), " J3-DRIFT");
 }
 
 // N7-RADIO: a message comes down the line at 500 ms; `after` is what the sink does then.
