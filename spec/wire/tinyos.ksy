@@ -58,7 +58,7 @@ types:
         type: u1
         enum: dispatch
         valid: dispatch::active_message
-        doc: The format of what follows; 0 is an active message.
+        doc: What the bytes after it are; this kit takes active messages.
         -requirement: WIRE-AM-DISPATCH
       - id: dest
         type: u2

@@ -79,13 +79,14 @@ void Acks::repeated(std::uint16_t node, const Net& net, std::int64_t now_us) {
   }
 }
 
-void Acks::came(std::uint16_t node, const Net& net) {
+bool Acks::came(std::uint16_t node, const Net& net) {
   Ring<Arrived, kRoom>& ring = arrived_[node];
   for (std::size_t i = 0; i < ring.size(); ++i) {
     if (!same_message(ring.newest(i).net, net)) continue;
     ring.newest(i).came = true;
-    return;
+    return true;
   }
+  return false;
 }
 
 // Returns whether by its log the node was not given the message, so that it cannot know it.

@@ -93,8 +93,9 @@ class Acks {
   void arrived(std::uint16_t node, const Observation& seen, std::uint16_t sender, const Net& net,
                const Arrival& arrival);
   void repeated(std::uint16_t node, const Net& net, std::int64_t now_us);
-  /// Notes that by a log the node was given the message, switched off or not.
-  void came(std::uint16_t node, const Net& net);
+  /// Notes that by a log the node was given the message, switched off or not; returns whether it is
+  /// one that somebody sent.
+  bool came(std::uint16_t node, const Net& net);
   /// Notes that by a log the node received the message.
   /// `may`: it is on then, and may be a member, whatever it was when the message was sent.
   void surely(std::uint16_t node, const Net& net, std::int64_t now_us, bool may, bool no_room);

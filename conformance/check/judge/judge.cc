@@ -356,7 +356,11 @@ void Judge::repeated(std::uint32_t index, const Observation& seen, const Mark& m
 
 // Takes a log's line that gives a node a message that is known from its sender.
 void Judge::surely(const Observation& seen, const Mark& mark, const Net& net) {
-  acks_.came(mark.receiver, net);
+  const bool known = acks_.came(mark.receiver, net);
+  // A line can give a base station something else than its sink sent.
+  if (!known && seen.kind == Kind::kSerial && is(mark.receiver, Role::kBaseStation)) {
+    return base_station_hears(mark.device, seen, mark, net);
+  }
   if (interfaces_.switched_off(mark.receiver, seen.frame.link)) return given_off(seen, mark, net);
   acks_.surely(mark.receiver, net, seen.place.time_us,
                standing(mark.receiver) != Standing::kOutside, no_room(mark.receiver, net));

@@ -21,8 +21,8 @@ std::string read(const std::filesystem::path& file) {
 /// Returns the comments at the top of every bad input, lines joined, and the test that makes its
 /// own.
 std::string expectations() {
-  std::string out = read(kCompiler + "test/bad_test.cc");
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(kCompiler + "test/bad")) {
+  std::string out = read(kCompiler + "tests/bad_test.cc");
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(kCompiler + "tests/bad")) {
     if (!entry.is_regular_file()) continue;
     std::ifstream in(entry.path());
     for (std::string line; std::getline(in, line) && line.find_first_of("#;") == 0;) {
