@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <string>
+#include <utility>
 
 #include "codec/containers/link_record.h"
 #include "codec/containers/pcapng_reader.h"
@@ -91,12 +93,15 @@ void check_walk(const std::vector<Kept>& packets, Bytes file) {
   }
 }
 
-// Applies the writer's documented changes: times that are missing or before 1970, and the header
-// that a sniffer puts before radio frames.
-Kept as_written(const Kept& kept, std::int64_t* last_ns) {
+// Applies the changes that the writer documents: times before 1970, or missing beside what a simple
+// packet block cannot say, and the header that a sniffer puts before radio frames.
+Kept as_written(const Kept& kept, bool first_interface, std::int64_t* last_ns) {
   Kept wanted = kept;
-  if (kept.packet.time_ns != kNoTime) *last_ns = std::max<std::int64_t>(kept.packet.time_ns, 0);
-  wanted.packet.time_ns = *last_ns;
+  const Packet packet = kept.get();
+  const bool simple = first_interface && packet.comment.empty() &&
+                      packet.direction == Direction::kUnknown && packet.dropped_bytes == 0;
+  if (packet.time_ns != kNoTime) *last_ns = std::max<std::int64_t>(packet.time_ns, 0);
+  wanted.packet.time_ns = packet.time_ns == kNoTime && simple ? kNoTime : *last_ns;
   wanted.packet.link_type = link_type_of(kept.get());
   const bool malformed_zep = kept.packet.link_type == 0;
   require(wanted.packet.link_type == kept.packet.link_type || malformed_zep ||
@@ -110,6 +115,7 @@ void check_writer(const File& file) {
   std::string written;
   writer.begin(written);
   File wanted;
+  std::pair<std::uint16_t, std::string> first;
   std::int64_t last_ns = 0;
   for (std::size_t i = 0; i < file.packets.size(); ++i) {
     const Packet packet = file.packets[i].get();
@@ -117,7 +123,9 @@ void check_writer(const File& file) {
     require(writer.write(packet, file.names[i], written) == held,
             "every packet that has a link type can be written");
     if (!held) continue;
-    wanted.packets.push_back(as_written(file.packets[i], &last_ns));
+    const std::pair<std::uint16_t, std::string> interface { link_type_of(packet), file.names[i] };
+    if (wanted.packets.empty()) first = interface;
+    wanted.packets.push_back(as_written(file.packets[i], interface == first, &last_ns));
     wanted.names.push_back(file.names[i]);
   }
   writer.finish(written);

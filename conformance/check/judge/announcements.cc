@@ -246,7 +246,6 @@ void Announcements::overdue_reports(SinkWatch& sink, std::int64_t end_us) {
     sink.set_due(watch, false);
     const auto owes = [](const SinkHypothesis& h) { return !h.unknown && h.owes_report; };
     if (!std::all_of(watch.set.begin(), watch.set.end(), owes)) continue;
-    if (watch.found_full) continue;
     context_.report(
         "J6-REPORT"_rule,
         room && !may_be_lost(sink, watch) && !context_.who.damaged(watch.admitted.time_us, now_us)
@@ -284,7 +283,6 @@ void Announcements::unannounced(const SinkWatch& sink, std::uint16_t mote_am,
   if (end_us <= context_.due_us(sink.device, watch.admitted_us, machine::Link::kRadio)) return;
   const auto owes = [](const SinkHypothesis& h) { return !h.unknown && h.owes_notice; };
   if (!std::all_of(watch.set.begin(), watch.set.end(), owes)) return;
-  if (watch.found_full) return;
   context_.report("J6-ADD"_rule,
                   may_be_lost(sink, watch) ? Severity::kInconclusive : Severity::kFail,
                   watch.admitted, sink.device,

@@ -473,6 +473,8 @@ void SinkJoins::ack_join(std::uint16_t, const Observation& seen, const AckJoin& 
     if (!hears(device, seen, sure)) continue;
     PairWatch& watch = pair(sink, ack.src.devid);
     next_.clear();
+    // With a list that may be full of others it may ignore the mote, and owe nothing.
+    const bool full = others(sink, watch) >= context_.profile().members_max;
     bool admitted = false;
     bool all_admit = true;
     ReqId ignored = ReqId::kNone;
@@ -497,8 +499,8 @@ void SinkJoins::ack_join(std::uint16_t, const Observation& seen, const AckJoin& 
       if (!admits && !context_.actions.all().empty()) {
         ignored = context_.actions.all()[0].requirement;
       }
-      if (!sure || !admits || h.unknown) next_.push_back(h);
-      all_admit = all_admit && admits && !h.unknown;
+      if (!sure || !admits || h.unknown || full) next_.push_back(h);
+      all_admit = all_admit && admits && !h.unknown && !full;
       if (!admits) continue;
       admitted = true;
       heard.unknown = false;
@@ -508,7 +510,6 @@ void SinkJoins::ack_join(std::uint16_t, const Observation& seen, const AckJoin& 
     }
     watch.ack = seen.place;
     if (admitted) {
-      watch.found_full = others(sink, watch) >= context_.profile().members_max;
       watch.admitted = seen.place;
       watch.admitted_us = seen.place.time_us + air_us(seen);
     }

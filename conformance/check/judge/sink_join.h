@@ -93,13 +93,12 @@ struct PairWatch {
   bool report_due = false;      ///< Surely owed since `admitted`, and not yet complained about.
   bool request_listed = false;  ///< The last request surely came while it was listed.
   bool cut_off = false;         ///< It was listed when the sink's island became another.
-  bool found_full = false;      ///< The list may have been full of others at `admitted`.
 
   /// Takes the sink to list the mote, or not, and to owe nothing.
   void know_nothing() {
     set.assign(1, SinkHypothesis{});
     set.front().unknown = true;
-    answered = report_due = request_listed = cut_off = found_full = false;
+    answered = report_due = request_listed = cut_off = false;
   }
 };
 

@@ -32,8 +32,8 @@ bool SynapticWatch::is_twin(const Node& node, machine::ChannelId id) {
 
 // Returns whether a channel of that id may be one from the node to itself, by either name.
 bool SynapticWatch::may_be_local(machine::ChannelId id) {
-  const std::uint16_t from = id >> 16;
-  const std::uint16_t to = id & 0xFFFF;
+  const auto from = static_cast<std::uint16_t>(id >> 16);
+  const auto to = static_cast<std::uint16_t>(id & 0xFFFF);
   return from == to || from == machine::kLocalDevid || to == machine::kLocalDevid;
 }
 
