@@ -478,11 +478,8 @@ bool Acks::lacks_delivery(std::uint16_t node, const Arrived& arrived) {
 // no buffer can have been full, whatever the mote did besides.
 bool Acks::overtaken(std::uint16_t node, const Arrived& arrived) {
   if (arrived.overtaken_us < 0 || context_.device(node).role != machine::Role::kMote) return false;
-  std::int64_t since_us = arrived.whole_us;
-  for (const BusyTime& busy : context_.busy_times(node)) {
-    if (!busy.line && busy.to_us >= arrived.whole_us) since_us = std::min(since_us, busy.from_us);
-  }
-  since_us -= 2 * context_.response_us();
+  const std::int64_t since_us =
+      context_.held_since_us(node, arrived.whole_us) - 2 * context_.response_us();
   std::size_t before = 0;
   Ring<Arrived, kRoom>& ring = arrived_[node];
   for (std::size_t i = 0; i < ring.size(); ++i) {

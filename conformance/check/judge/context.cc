@@ -292,14 +292,18 @@ int Context::backlog_of(std::uint16_t node, std::size_t index) const {
   return message && net.src.devid == own && !net.is_ack() ? 0 : -1;
 }
 
-// Returns how many things at most a node had still to handle at once while a message that came at
-// `time_us` was among them, beside that one.
-int Context::backlog(std::uint16_t node, std::int64_t time_us) const {
-  // What came since a busy application took nothing waits as well.
+std::int64_t Context::held_since_us(std::uint16_t node, std::int64_t time_us) const {
   std::int64_t since_us = time_us;
   for (const BusyTime& busy : busy_times(node)) {
     if (!busy.line && busy.to_us >= time_us) since_us = std::min(since_us, busy.from_us);
   }
+  return since_us;
+}
+
+// Returns how many things at most a node had still to handle at once while a message that came at
+// `time_us` was among them, beside that one.
+int Context::backlog(std::uint16_t node, std::int64_t time_us) const {
+  const std::int64_t since_us = held_since_us(node, time_us);
   const auto begin =
       std::ranges::lower_bound(run.seen, since_us - 2 * response_us(), {},
                                [](const Observation& seen) { return seen.place.time_us; });

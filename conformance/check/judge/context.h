@@ -101,6 +101,9 @@ struct Context {
   /// Returns whether by its log the application of the node took nothing then, and so many messages
   /// waited for it that they may have filled a buffer.
   bool full(std::uint16_t node, std::int64_t time_us) const;
+  /// Returns since when what came until then waits for the application of the node, which by its
+  /// log was busy; `time_us` if it was not.
+  std::int64_t held_since_us(std::uint16_t node, std::int64_t time_us) const;
   /// Returns the times in which by its log a line or the application of the node was busy.
   const std::vector<BusyTime>& busy_times(std::uint16_t node) const;
   machine::JoinContext join_context(std::uint16_t id, std::uint16_t island,

@@ -492,7 +492,7 @@ void Judge::serial(std::uint32_t index, const Observation& seen, const Mark& mar
   if (seen.to_mote) {
     down_serial(index, seen, mark, sink, net);
   } else {
-    up_serial(seen, mark, sink, net);
+    up_serial(seen, mark, sink, net, passes);
     if (!whole_log) announcements_.showed_life(sink, seen.place.time_us);
   }
   if (net.is_ack()) ack_comes(net);
@@ -511,10 +511,9 @@ void Judge::whole(const Observation& seen, std::uint16_t sender) {
                    {}});
 }
 
-void Judge::up_serial(const Observation& seen, const Mark& mark, std::uint16_t sink,
-                      const Net& net) {
+void Judge::up_serial(const Observation& seen, const Mark& mark, std::uint16_t sink, const Net& net,
+                      bool passes) {
   SerialJoined joined;
-  const bool passes = forwarding_.came_up(sink, net);
   // What an application sends may look like one.
   if (!passes && !originals_.asked(sink, net) && parse_serial_joined(net, joined)) {
     announcements_.report(sink, seen, net, joined);

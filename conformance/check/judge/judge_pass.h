@@ -79,7 +79,9 @@ class Judge {
   void serial(std::uint32_t index, const Observation& seen, const Mark& mark);
   // Judges the length of a net_msg on a serial line, the first one that is cut short of a sender.
   void whole(const Observation& seen, std::uint16_t sender);
-  void up_serial(const Observation& seen, const Mark& mark, std::uint16_t sink, const Net& net);
+  /// `passes`: a message that it heard.
+  void up_serial(const Observation& seen, const Mark& mark, std::uint16_t sink, const Net& net,
+                 bool passes);
   void base_station_hears(std::uint16_t sink, const Observation& seen, const Mark& mark,
                           const Net& net);
   void down_serial(std::uint32_t index, const Observation& seen, const Mark& mark,

@@ -223,10 +223,13 @@ bool SynapticWatch::flooded(std::uint16_t device, const Unknown& one) const {
   return std::ranges::any_of(context_.busy_times(device), [&](const BusyTime& busy) {
     if (busy.from_us > came_us || came_us > busy.to_us + context_.response_us()) return false;
     std::size_t others = 0;
-    for (std::size_t i = 0; i < seen.size() && seen[i].place.time_us <= came_us; ++i) {
+    const auto first =
+        std::ranges::lower_bound(seen, busy.from_us - context_.response_us(), {},
+                                 [](const Observation& other) { return other.place.time_us; });
+    for (auto i = static_cast<std::size_t>(first - seen.begin());
+         i < seen.size() && seen[i].place.time_us <= came_us; ++i) {
       const bool its = context_.who.marks[i].receiver == device && seen[i].received;
-      const bool waits = seen[i].place.time_us >= busy.from_us - context_.response_us();
-      if (its && waits && seen[i].frame.link == one.link) ++others;
+      if (its && seen[i].frame.link == one.link) ++others;
     }
     return others > room;  // These data are one of them.
   });
