@@ -155,6 +155,11 @@ class Broker:
             self.process.wait()
         self.process = None
 
+    def kill(self):
+        """Ends it without a goodbye."""
+        self.process.kill()
+        self.stop()
+
     def client(self, program):
         user, password = USER.values()
         secure = ["--cafile", self.tls / "ca.crt"] if self.tls else []
@@ -413,6 +418,22 @@ islands:
         plain = self.started("base-station", "--island", 12, "--space",
                              self.broker.url.replace("mqtts", "mqtt"), "--credentials", users)
         self.assertNotIn("connected", plain.waits_for(rb"mqtt://\S+: (.*)\n"))
+
+    def test_tls_and_the_broker_goes_and_comes(self):
+        certificates(self.folder)
+        self.broker.stop()
+        self.broker = Broker(self, self.broker.port, self.folder)
+        users = self.folder / "gate"
+        users.write_text(f"user={USER['RUBRIC_MQTT_USER']}\n"
+                         f"password={USER['RUBRIC_MQTT_PASSWORD']}\nca={self.folder}/ca.crt\n",
+                         encoding="utf-8")
+        base, _ = self.island(11, "--credentials", users)
+        for stop in (self.broker.stop, self.broker.kill):
+            stop()
+            base.waits_for(rb"(mqtts://\S+: the connection is lost)")
+            self.broker.start()
+            base.waits_for(rb"(mqtts://\S+: connected)")
+        self.assertEqual(base.end()[0], 0)
 
     def test_tls_by_a_certificate(self):
         certificates(self.folder)

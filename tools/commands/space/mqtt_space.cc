@@ -6,17 +6,16 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cerrno>
 #include <charconv>
 #include <chrono>
 #include <condition_variable>
 #include <cstdlib>
-#include <cstring>
 #include <fstream>
 #include <map>
 #include <mutex>
 #include <set>
 #include <stdexcept>
+#include <thread>
 #include <utility>
 
 #include "codec/lines/broken.h"
@@ -28,8 +27,9 @@ namespace rubric::space {
 namespace {
 
 constexpr int kKeepAliveS = 20;
-constexpr unsigned kFirstPauseS = 1;
-constexpr unsigned kLongestPauseS = 30;
+constexpr std::chrono::seconds kFirstPause{1};
+constexpr std::chrono::seconds kLongestPause{30};
+constexpr int kLookMs = 100;               // How often its thread looks whether it shall end.
 constexpr int kQos = 2;                    // Once, and in order.
 constexpr std::size_t kInboxMax = 10'000;  // Tuples that nobody has taken yet.
 constexpr int kUnsentMax = 1000;           // Events while there is no broker.
@@ -180,9 +180,8 @@ class MqttSpace::Client {
   }
 
   std::vector<Tuple> take() {
-    begin();
     const std::lock_guard lock(mutex_);
-    if (tls_failed_ && !connected_) no_tls();
+    if (!broken_.empty()) throw lines::Broken(broken_);
     return std::exchange(inbox_, {});
   }
 
@@ -200,7 +199,7 @@ class MqttSpace::Client {
                                    });
     mosquitto_publish_callback_set(
         handle_, [](mosquitto*, void* self, int id) { static_cast<Client*>(self)->published(id); });
-    // When TLS fails in the library's thread, this line is all that it says before the thread ends.
+    // Of a TLS that fails after connect() this line is all that the library says.
     mosquitto_log_callback_set(handle_, [](mosquitto*, void* self, int level, const char* text) {
       if (level == MOSQ_LOG_ERR && std::string_view(text).starts_with("OpenSSL Error")) {
         static_cast<Client*>(self)->tls_failed_ = true;
@@ -223,34 +222,36 @@ class MqttSpace::Client {
                                last.data(), kQos, true),
             "last will");
     }
-    mosquitto_reconnect_delay_set(handle_, kFirstPauseS, kLongestPauseS, true);
-    host_ = settings.host;
-    port_ = settings.port;
-    begin();
+    check(mosquitto_threaded_set(handle_, true), "thread");
+    thread_ = std::jthread([this, host = settings.host, port = settings.port](
+                               const std::stop_token& stop) { serve(stop, host, port); });
   }
 
-  // Connects for the first time; the library itself only connects again. A broker may start later.
-  void begin() {
-    const auto now = std::chrono::steady_clock::now();
-    if (started_ || now < next_try_) return;
-    const int result = mosquitto_connect_async(handle_, host_.c_str(), port_, kKeepAliveS);
-    if (result == MOSQ_ERR_ERRNO) {
-      if (!said_) text::print(stderr, "rubric: {}: {}\n", name_, std::strerror(errno));
-      said_ = true;
-      next_try_ = now + pause_;
-      pause_ = std::min(2 * pause_, std::chrono::seconds(kLongestPauseS));
-      return;
+  // Connects, again and again: a broker may start later, or go and come. The library's own thread
+  // does that, too, but ends for good when a connection over TLS is cut.
+  void serve(const std::stop_token& stop, const std::string& host, int port) {
+    for (auto pause = kFirstPause; !stop.stop_requested();
+         pause = std::min(2 * pause, kLongestPause)) {
+      tls_failed_ = false;
+      int result = mosquitto_connect_async(handle_, host.c_str(), port, kKeepAliveS);
+      const bool tried = result == MOSQ_ERR_SUCCESS;
+      while (result == MOSQ_ERR_SUCCESS && !stop.stop_requested()) {
+        result = mosquitto_loop(handle_, kLookMs, 1);
+        if (connected_) pause = kFirstPause;
+      }
+      std::unique_lock lock(mutex_);
+      if (!tried) say(result);
+      if (!was_connected_ && (tls_failed_ || result == MOSQ_ERR_TLS)) {
+        broken_ =
+            name_ +
+            ": no TLS: its certificate is not trusted (ca= in --credentials), it asks for one "
+            "(cert=, key=), or nothing speaks TLS there";
+      } else if (!was_connected_ && result == MOSQ_ERR_EAI) {
+        broken_ = fmt::format("mqtt: {}: {}", host, mosquitto_strerror(result));
+      }
+      if (!broken_.empty()) return;
+      done_.wait_for(lock, stop, pause, [] { return false; });
     }
-    if (result == MOSQ_ERR_TLS) no_tls();
-    check(result, host_.c_str());
-    check(mosquitto_loop_start(handle_), "thread");
-    started_ = true;
-  }
-
-  [[noreturn]] void no_tls() const {
-    throw lines::Broken(name_ +
-                        ": no TLS: its certificate is not trusted (ca= in --credentials), it asks "
-                        "for one (cert=, key=), or nothing speaks TLS there");
   }
 
   // Writes a tuple, now or when the broker is there. Both with the mutex held.
@@ -272,6 +273,7 @@ class MqttSpace::Client {
       said_ = true;
       return;
     }
+    was_connected_ = true;
     text::print(stderr, "rubric: {}: connected\n", name_);
     connected_ = true;
     said_ = false;
@@ -284,13 +286,18 @@ class MqttSpace::Client {
 
   void disconnected(int code) {
     const std::lock_guard lock(mutex_);
-    if (code != 0 && !said_) {
-      text::print(stderr, "rubric: {}: {}\n", name_,
-                  connected_ ? "the connection is lost" : mosquitto_strerror(code));
-    }
-    said_ = said_ || code != 0;
+    if (code != 0) say(code);
     connected_ = false;
     done_.notify_all();
+  }
+
+  // Says why it is not connected, once; with the mutex held.
+  void say(int result) {
+    if (!said_) {
+      text::print(stderr, "rubric: {}: {}\n", name_,
+                  connected_ ? "the connection is lost" : mosquitto_strerror(result));
+    }
+    said_ = true;
   }
 
   void published(int id) {
@@ -315,33 +322,32 @@ class MqttSpace::Client {
   void say_goodbye() {
     std::unique_lock lock(mutex_);
     done_.wait_for(lock, kGoodbye, [this] { return !connected_ || last_id_ == 0; });
-    const bool there = connected_;
     lock.unlock();
     mosquitto_disconnect(handle_);
-    // The thread ends when it has said goodbye, or in its pause between two tries.
-    if (started_) mosquitto_loop_stop(handle_, !there);
+    lock.lock();
+    done_.wait_for(lock, kGoodbye, [this] { return !connected_; });
+    lock.unlock();
+    thread_ = {};  // Asks it to end, and waits for that.
   }
 
   const std::string creator_;
   const std::string root_;
   const std::string name_;
-  std::string host_;
-  std::uint16_t port_ = 0;
-  bool started_ = false;  // Its thread runs; until then this one alone uses the handle.
-  std::chrono::steady_clock::time_point next_try_{};
-  std::chrono::seconds pause_{kFirstPauseS};
   mosquitto* handle_ = nullptr;
-  std::mutex
-      mutex_;  // Also held while the library is called; its callbacks come without its locks.
-  std::condition_variable done_;
-  bool connected_ = false;
+  // Also held while the library is called; its callbacks come without its locks.
+  std::mutex mutex_;
+  std::condition_variable_any done_;
+  std::atomic<bool> connected_ = false;
+  bool was_connected_ = false;  // Ever: from then on, what fails is tried again.
   std::atomic<bool> tls_failed_ = false;
+  std::string broken_;  // Why it was given up.
   bool said_ = false;
   int unsent_ = 0;
   int last_id_ = 0;                            // Of what was published last and is not done.
   std::map<std::string, std::string> tuples_;  // This participant's, by topic.
   std::set<std::string> filters_;
   std::vector<Tuple> inbox_;
+  std::jthread thread_;  // The last: it uses all others.
 };
 
 MqttSpace::MqttSpace(const MqttSettings& settings, const std::string& creator, const Tuple& will)
