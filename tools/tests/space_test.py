@@ -11,6 +11,7 @@ import pwd
 import re
 import socket
 import ssl
+import struct
 import subprocess
 import sys
 import threading
@@ -116,6 +117,21 @@ def slow_host(test):
         with contextlib.suppress(OSError):  # The client does not trust it, and goes.
             context.wrap_socket(client, server_side=True).close()
         client.close()
+    threading.Thread(target=serve, daemon=True).start()
+    return listener.getsockname()[1]
+
+
+def cutting_host(test):
+    """The port of a host that resets each connection in TLS's handshake."""
+    listener = socket.create_server(("127.0.0.1", 0))
+    test.addCleanup(listener.close)
+
+    def serve():
+        with contextlib.suppress(OSError):  # The test is over.
+            while True:
+                client = listener.accept()[0]
+                client.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+                client.close()
     threading.Thread(target=serve, daemon=True).start()
     return listener.getsockname()[1]
 
@@ -353,7 +369,9 @@ islands:
 
     def test_the_broker_goes_and_comes(self):
         self.broker.stop()
-        early = self.started("base-station", "--island", "12", "--space", self.broker.url,
+        # Of this name's addresses the broker has one.
+        url = self.broker.url.replace("127.0.0.1", "localhost")
+        early = self.started("base-station", "--island", "12", "--space", url,
                              env={**os.environ, **USER})
         early.waits_for(rb"(mqtt://\S+: Connection refused)")
         self.broker.start()
@@ -414,6 +432,17 @@ islands:
                                     "--credentials", users)
             stranger.waits_for(rb"(mqtts://\S+: no TLS: its certificate is not trusted)")
             self.assertEqual(stranger.end(None)[0], 66)
+        # A host that cuts each connection is tried again, at a leisurely pace.
+        cutter = self.started("base-station", "--island", 12, "--space",
+                              f"mqtts://127.0.0.1:{cutting_host(self)}/rubicon",
+                              "--credentials", users)
+        cutter.waits_for(rb"(mqtts://\S+: The connection was lost)")
+        time.sleep(1)
+        before = os.times()
+        self.assertEqual(cutter.end()[0], 0)
+        after = os.times()
+        self.assertLess(after.children_user + after.children_system -
+                        before.children_user - before.children_system, 0.3)
         # And in plain text.
         plain = self.started("base-station", "--island", 12, "--space",
                              self.broker.url.replace("mqtts", "mqtt"), "--credentials", users)

@@ -2,7 +2,8 @@
 
 #include <fmt/format.h>
 #include <mosquitto.h>
-#include <unistd.h>
+#include <poll.h>
+#include <pthread.h>
 
 #include <algorithm>
 #include <atomic>
@@ -233,14 +234,18 @@ class MqttSpace::Client {
     for (auto pause = kFirstPause; !stop.stop_requested();
          pause = std::min(2 * pause, kLongestPause)) {
       tls_failed_ = false;
-      int result = mosquitto_connect_async(handle_, host.c_str(), port, kKeepAliveS);
+      // Tries all addresses of the host, and may take minutes; say_goodbye() does not wait for it.
+      pthread_setcancelstate(PTHREAD_CANCEL_ENABLE, nullptr);
+      int result = mosquitto_connect(handle_, host.c_str(), port, kKeepAliveS);
+      pthread_setcancelstate(PTHREAD_CANCEL_DISABLE, nullptr);
       const bool tried = result == MOSQ_ERR_SUCCESS;
       while (result == MOSQ_ERR_SUCCESS && !stop.stop_requested()) {
         result = mosquitto_loop(handle_, kLookMs, 1);
         if (connected_) pause = kFirstPause;
+        if (result == MOSQ_ERR_SUCCESS && cut()) result = MOSQ_ERR_CONN_LOST;
       }
       std::unique_lock lock(mutex_);
-      if (!tried) say(result);
+      if (!tried || result == MOSQ_ERR_CONN_LOST) say(result);
       if (!was_connected_ && (tls_failed_ || result == MOSQ_ERR_TLS)) {
         broken_ =
             name_ +
@@ -252,6 +257,12 @@ class MqttSpace::Client {
       if (!broken_.empty()) return;
       done_.wait_for(lock, stop, pause, [] { return false; });
     }
+  }
+
+  // Returns whether the other end is gone: in TLS's handshake the library itself never notices.
+  bool cut() const {
+    pollfd end{mosquitto_socket(handle_), 0, 0};
+    return !connected_ && poll(&end, 1, 0) == 1 && (end.revents & (POLLERR | POLLHUP)) != 0;
   }
 
   // Writes a tuple, now or when the broker is there. Both with the mutex held.
@@ -327,7 +338,9 @@ class MqttSpace::Client {
     lock.lock();
     done_.wait_for(lock, kGoodbye, [this] { return !connected_; });
     lock.unlock();
-    thread_ = {};  // Asks it to end, and waits for that.
+    thread_.request_stop();
+    pthread_cancel(thread_.native_handle());
+    thread_.join();
   }
 
   const std::string creator_;
