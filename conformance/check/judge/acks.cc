@@ -34,6 +34,12 @@ void Acks::begin_life(std::uint16_t node, std::int64_t since_us) {
   orders_[node] = {};
 }
 
+// An ack that would go to the node itself, in whose name somebody sent, is not owed (decision 131).
+static bool wants_ack(const Net& net) {
+  return net.src != net.dest &&
+         machine::must_ack(net.reliable == 1, net.dest, net.trans_id, net.app_id);
+}
+
 void Acks::arrived(std::uint16_t node, const Observation& seen, std::uint16_t sender,
                    const Net& net, const Arrival& arrival) {
   Ring<Arrived, kRoom>& ring = arrived_[node];
@@ -46,8 +52,7 @@ void Acks::arrived(std::uint16_t node, const Observation& seen, std::uint16_t se
   arrived.forbidden = net.sound ? arrival.forbidden : "N11-NBYTES"_rule;
   arrived.weak = net.sound && arrival.weak;
   arrived.to_self = arrival.to_self;
-  arrived.ackable = arrived.forbidden == ReqId::kNone && arrived.to_self &&
-                    machine::must_ack(net.reliable == 1, net.dest, net.trans_id, net.app_id);
+  arrived.ackable = arrived.forbidden == ReqId::kNone && arrived.to_self && wants_ack(net);
   arrived.no_room = arrival.no_room;
   arrived.must_ack = arrived.ackable && !arrival.free && !arrival.no_room;
   arrived.doubtful = arrival.doubtful;
@@ -113,8 +118,7 @@ void Acks::surely(std::uint16_t node, const Net& net, std::int64_t now_us, bool 
     arrived.net = net;  // As it was given, perhaps without the bytes after its content.
     if (may && (arrived.forbidden == "N10-OFF"_rule || arrived.forbidden == "J11-HEAR"_rule)) {
       arrived.forbidden = ReqId::kNone;
-      arrived.ackable = arrived.to_self &&
-                        machine::must_ack(net.reliable == 1, net.dest, net.trans_id, net.app_id);
+      arrived.ackable = arrived.to_self && wants_ack(net);
     }
     return;
   }

@@ -46,7 +46,7 @@ void Forwarding::heard_on_serial(std::uint16_t sink, std::uint16_t base, const O
   passing.owes = onward && net.sound && net.reliable <= 1 && !line->deaf &&
                  net.dest.pid != machine::kBroadcastPid;
   passing.owed = passing.owes && !down.off && (down.sure || !context_.device(sink).hearing);
-  store(line->down, passing, line->owed_down);
+  store(line->down, passing, line->owed_down, line->forgotten_down);
   // A capture does not show whether the base station wrote it; from PEIS come other islands' only.
   const bool own_island = net.src.pid == line->island && net.src.devid != machine::kNullDevid;
   if (own_island && net.sound && !context_.device(base).hearing && !holds(line->up, net, false)) {
@@ -148,6 +148,10 @@ bool Forwarding::sent_on_radio(std::uint16_t sink, const Observation& seen, cons
   const bool plain = net.src.pid == net.dest.pid && net.src.pid != line->island &&
                      !line->changing(seen.place.time_us);
   if ((!plain && may_be_anothers(*line, net)) || relayed(*line, seen, net)) return true;
+  if (line->forgotten_down > 0) {
+    --line->forgotten_down;
+    return true;
+  }
   if (near != nullptr) {
     refuse_down(*line, seen, net);
     return true;

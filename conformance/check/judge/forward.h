@@ -122,12 +122,16 @@ class Forwarding {
     std::uint32_t forwarded = 0;  ///< Messages that it passed on to its base station.
     std::uint32_t owed_up = 0;
     std::uint32_t owed_down = 0;
+    // So many of those may still be passed on, but were pushed out of their rings.
+    std::uint32_t forgotten_up = 0;
+    std::uint32_t forgotten_down = 0;
     Stale stale;  ///< On its serial line.
   };
 
   void forwards_nothing(const Line& line);
   Line* find(std::uint16_t sink);
-  void store(Ring<Passing, kRoom>& ring, const Passing& passing, std::uint32_t& owed);
+  void store(Ring<Passing, kRoom>& ring, const Passing& passing, std::uint32_t& owed,
+             std::uint32_t& forgotten);
   /// Returns whether the message is among these, `waiting`: not yet passed on.
   static bool holds(const Ring<Passing, kRoom>& ring, const Net& net, bool waiting);
   static void forget_owed(Ring<Passing, kRoom>& ring, std::uint32_t& owed);

@@ -65,6 +65,7 @@ void Forwarding::begin_life(std::uint16_t sink, std::int64_t since_us) {
   line->down.keep_newest(later);
   forget_owed(line->up, line->owed_up);
   forget_owed(line->down, line->owed_down);
+  line->forgotten_up = line->forgotten_down = 0;
   line->off = line->deaf = false;
   if (context_.device(sink).hearing) line->island = context_.device(sink).island;
 }
@@ -88,8 +89,12 @@ void Forwarding::radio_set(std::uint16_t sink, bool on) {
   if (!on) forget_owed(line->down, line->owed_down);
 }
 
-void Forwarding::store(Ring<Passing, kRoom>& ring, const Passing& passing, std::uint32_t& owed) {
-  if (ring.full() && ring.oldest(0).owed) --owed;
+void Forwarding::store(Ring<Passing, kRoom>& ring, const Passing& passing, std::uint32_t& owed,
+                       std::uint32_t& forgotten) {
+  if (ring.full() && ring.oldest(0).owed) {
+    --owed;
+    ++forgotten;
+  }
   Passing& stored = ring.push(passing);
   if (passing.owed) ++owed;
   for (std::size_t i = 1; i < std::min(ring.size(), kTwinsLook); ++i) {

@@ -68,7 +68,7 @@ void Forwarding::heard_on_radio(const Observation& seen, std::uint16_t sender, c
       if (context_.device(line.sink).whole) unheard(line, before);
       break;
     }
-    store(line.up, passing, line.owed_up);
+    store(line.up, passing, line.owed_up, line.forgotten_up);
     if (early && passing.forbidden != ReqId::kNone) pass_up(line, line.up.newest(0), seen);
   }
 }
@@ -133,7 +133,11 @@ void Forwarding::sent_on_serial(std::uint16_t sink, const Observation& seen, con
     if (line->owed_up > 0) overdue_up(*line, now);
     return;
   }
-  refuse_up(*line, seen, net);
+  if (line->forgotten_up > 0) {
+    --line->forgotten_up;
+  } else {
+    refuse_up(*line, seen, net);
+  }
   if (line->owed_up > 0) overdue_up(*line, now);
 }
 

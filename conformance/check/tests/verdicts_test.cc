@@ -71,6 +71,26 @@ TEST(Verdicts, ALateReply) {
             "J9-INTERLEAVE");
 }
 
+// More wait for a busy radio than are remembered one by one; what was never given is found after.
+TEST(Verdicts, AFloodThatWaitsIsNotForgotten) {
+  const auto net = [](int number, const char* data) {
+    return "net_msg(dest=11:7 src=11:null reliable=0 seq_num=" + std::to_string(number) +
+           " payload.trans_id=connless payload.app_id=mockup payload.payload=" + data + ")";
+  };
+  std::string log =
+      "%rtr 1\n%node sA sink id=1 island=11 iut whole\n%node bA base_station island=11\ncase x\n" +
+      at(0, "sA < rA busy");
+  std::string sent = at(2000, "sA < rA idle");
+  for (int i = 0; i < 400; ++i) {
+    log += at(1000 + i, "sA < serA am=0->1 " + net(i, "x01"));
+    sent += at(2000 + 5 * i, "sA > rA am=1->7 " + net(i, "x01"));
+  }
+  log += sent;
+  EXPECT_EQ(broken_in(judge_log(log, true)), "");
+  EXPECT_EQ(broken_in(judge_log(log + at(6000, "sA > rA am=1->7 " + net(399, "x02")), true)),
+            "N7-CONTENT");
+}
+
 // What of a log of the application alone sends and receives is seen nowhere.
 TEST(Verdicts, AnApplicationAloneIsNotBlamed) {
   const std::string log =
