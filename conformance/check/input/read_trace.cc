@@ -35,7 +35,6 @@ class LogReader {
     bool applications = false;
     for (const trace::NodeHeader& header : scope_.nodes) marked = marked || header.iut;
     for (const trace::NodeHeader& header : scope_.nodes) {
-      if (!marked || header.iut) take_statement(header);
       LoggedNode node;
       node.name = header.name;
       node.file = static_cast<std::uint32_t>(run_.files.size() - 1);
@@ -43,8 +42,10 @@ class LogReader {
       node.id = header.id.value_or(0);
       node.island = header.island.value_or(kNoIsland);
       node.under_test = !marked || header.iut;
-      if (const std::int64_t* const said = find(header.stated, trace::ParameterId::kChannels)) {
-        node.channels = static_cast<std::uint8_t>(*said);
+      node.stated = header.stated;
+      // Whom the trace plays is taken for the like of those under test, as the runner does.
+      for (const trace::NodeHeader& other : scope_.nodes) {
+        if (marked && !header.iut && other.iut) node.stated = joined(node.stated, other.stated);
       }
       for (const Line* line : lines_) {
         if (line->node != header.name) continue;
@@ -73,20 +74,6 @@ class LogReader {
   }
 
  private:
-  // One statement holds for all nodes of a run. The number of channels is each node's own, and is
-  // not judged.
-  void take_statement(const trace::NodeHeader& node) {
-    for (const trace::Stated& one : node.stated) {
-      if (one.id == trace::ParameterId::kChannels) continue;
-      const std::int64_t* const said = find(run_.stated, one.id);
-      if (said && *said != one.value) {
-        throw trace::TraceError(
-            {}, "nodes state different values of " + std::string(trace::parameter(one.id).name));
-      }
-      if (!said) run_.stated.push_back(one);
-    }
-  }
-
   // Returns whether the line is about the link itself, not a frame.
   static bool is_state(const Line& line) {
     const std::string& name = line.message.name;
