@@ -103,7 +103,7 @@ struct LoggedNode {
   bool application = false;    ///< The log has its application's calls and events.
   bool hearing = false;        ///< The log has what its radio was given; a base station's lines.
   bool logged = false;         ///< The log has lines of it; else only a header names it.
-  bool whole = false;          ///< The log has all that it got and did.
+  bool whole = false;          ///< The log has all that it got and did (decision 13).
   bool peis = false;           ///< The log has its lines of PEIS.
   std::vector<BusyTime> busy;  ///< In order of their beginning.
   std::vector<std::int64_t> link_acks_us;      ///< When its link told it of an acknowledgement.
@@ -172,7 +172,6 @@ struct RunStorage;
 struct Run {
   std::vector<std::string> files;
   std::vector<LoggedNode> nodes;
-  bool all_stated = false;             ///< Other values are the profile's, by a log that is whole.
   std::int64_t watched_until_us = -1;  ///< By a log that is whole: its end.
   /// A log marks nodes as under test: the trace plays everybody else.
   bool marked = false;

@@ -1,5 +1,6 @@
 #include "conformance/check/input/read_trace.h"
 
+#include <algorithm>
 #include <map>
 #include <set>
 
@@ -59,7 +60,6 @@ class LogReader {
       if (header.whole) {
         node.whole = node.logged = node.application = node.hearing = true;
         node.peis = header.role == trace::Role::kBaseStation;
-        run_.all_stated = true;
       }
       run_.nodes.push_back(std::move(node));
       applications = applications || run_.nodes.back().application;
@@ -104,7 +104,8 @@ class LogReader {
 
   void take(const Line& line) {
     const std::int64_t time_us = time_of(line);
-    const bool watched = run_.all_stated && line.op == Op::kMustNot;
+    const bool watched =
+        line.op == Op::kMustNot && std::ranges::any_of(scope_.nodes, &trace::NodeHeader::whole);
     if (watched && line.time.base == trace::Time::Base::kStart) {
       run_.watched_until_us = std::max(run_.watched_until_us, us_of(line.time.to + 1));
     }

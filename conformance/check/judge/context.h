@@ -98,7 +98,7 @@ struct Context {
   }
   std::int64_t ack_timeout_us(std::uint16_t node) const { return terms(node).ack_timeout_us; }
   bool ack_timeout_stated(std::uint16_t node) const {
-    return run.all_stated || terms(node).ack_timeout_stated;
+    return device(node).whole || terms(node).ack_timeout_stated;
   }
   /// Returns when an answer to what the node has whole at `whole_us` is overdue. What waited for a
   /// line or an application that was busy, by the node's log, may take as long again behind others.

@@ -233,7 +233,7 @@ void JoinCalls::told(std::uint16_t mote, const Observation& seen, const machine:
       return !h.unknown && h.join.phase == Phase::kJoining &&
              now > context_.due_us(mote, last_expiry_us(mote, h));
     };
-    if (!refused && context_.run.all_stated && std::ranges::all_of(before, late)) {
+    if (!refused && context_.device(mote).whole && std::ranges::all_of(before, late)) {
       context_.report("J8-FAIL"_rule, Severity::kFail, seen.place, mote,
                       {"joined(FAIL) " + ms_text(now - before.back().first_request_us) +
                            " after the first join_request.",

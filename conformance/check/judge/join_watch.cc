@@ -63,7 +63,7 @@ void JoinWatch::asked(std::uint16_t mote, std::uint32_t index) {
 }
 
 void JoinWatch::repeats(std::uint16_t mote, std::int64_t now_us) {
-  if (!context_.run.all_stated) return;
+  if (!context_.device(mote).whole) return;
   std::erase_if(debts_[mote], [&](const Debt& debt) {
     if (debt.owes != Owes::kRetry || now_us <= debt.due_us || !still_owed(mote, debt)) return false;
     const std::int64_t from = context_.run.seen[debt.index].place.time_us;
@@ -147,7 +147,7 @@ void JoinWatch::surely_offered(std::uint16_t mote, std::uint32_t index, const Re
 bool JoinWatch::still_owed(std::uint16_t node, const Debt& debt) {
   const Observation& cause = context_.run.seen[debt.index];
   const std::int64_t from = cause.place.time_us;
-  const std::uint8_t requests_min = context_.run.all_stated
+  const std::uint8_t requests_min = context_.device(node).whole
                                         ? context_.profile(node).join_requests_max
                                         : motes_.expiries_min(node);
   if (debt.owes != Owes::kReply) {

@@ -215,7 +215,7 @@ void Originals::judge_refused(std::uint16_t node, const Observation& seen, const
   const bool nobody = machine::is_reserved(devid) && devid != machine::kNullDevid;
   const bool all = devid == machine::kBroadcastDevid;
   const bool refusable = send.data.size() > machine::kAppDataMax || (all ? send.reliable : nobody);
-  if (!context_.run.all_stated || call.free || refusable) return;
+  if (!context_.device(node).whole || call.free || refusable) return;
   if (call.full) return;
   bool awaits = false;
   for (std::size_t i = 0; i < sent_[node].size(); ++i) {

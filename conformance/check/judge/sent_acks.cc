@@ -189,7 +189,7 @@ void Originals::close(std::uint16_t node, std::size_t newest, std::int64_t now_u
   }
   // An unstated timeout may be longer than what is assumed (decision 110); for ever it is not.
   const std::int64_t waited = now_us - sent.place.time_us;
-  const std::int64_t timeouts = context_.run.all_stated ? 1 : kTimeouts;
+  const std::int64_t timeouts = context_.device(node).whole ? 1 : kTimeouts;
   const std::int64_t timeout_us = timeouts * context_.ack_timeout_us(node);
   if (now_us <= context_.due_us(node, sent.place.time_us + timeout_us)) return;
   context_.report(
