@@ -237,7 +237,7 @@ void JoinCalls::told(std::uint16_t mote, const Observation& seen, const machine:
       context_.report("J8-FAIL"_rule, Severity::kFail, seen.place, mote,
                       {"joined(FAIL) " + ms_text(now - before.back().first_request_us) +
                            " after the first join_request.",
-                       "Not later than the fifth expiry of the timer.",
+                       fails_by(mote),
                        {}});
     }
     context_.findings.kept("J8-FAIL"_rule);
@@ -338,6 +338,12 @@ std::int64_t JoinCalls::last_expiry_us(std::uint16_t mote, const MoteHypothesis&
   return over_us;
 }
 
+// Returns what a call without an answer ends with.
+std::string JoinCalls::fails_by(std::uint16_t mote) const {
+  return "joined(FAIL), not later than expiry " + number(context_.profile(mote).join_requests_max) +
+         " of the timer.";
+}
+
 // Judges a call that by a whole log ran out without an event before the next one.
 void JoinCalls::judge_over(std::uint16_t mote, std::int64_t now_us) {
   Calls& calls = calls_[mote];
@@ -350,9 +356,7 @@ void JoinCalls::judge_over(std::uint16_t mote, std::int64_t now_us) {
   if (!std::ranges::all_of(set, over)) return;
   calls.open = 0;
   context_.report("J8-FAIL"_rule, Severity::kFail, calls.called, mote,
-                  {"A joinIsland call ended without any joined event.",
-                   "joined(FAIL), not later than the fifth expiry.",
-                   {}});
+                  {"A joinIsland call ended without any joined event.", fails_by(mote), {}});
 }
 
 void JoinCalls::closes(std::uint16_t mote, std::int64_t end_us) {
@@ -375,7 +379,7 @@ void JoinCalls::closes(std::uint16_t mote, std::int64_t end_us) {
   context_.report("J8-FAIL"_rule, Severity::kFail, at, mote,
                   {"The join that began at " + ms_text(h.first_request_us) + " with number " +
                        number(h.join.seq_num) + " ended without any joined event.",
-                   "joined(FAIL), not later than the fifth expiry.",
+                   fails_by(mote),
                    {}});
 }
 
