@@ -65,6 +65,7 @@ class LogReader {
       applications = applications || run_.nodes.back().application;
     }
     run_.marked = run_.marked || marked;
+    drop_others();
     // If a log has applications, a node with radio input has its application as well, even if that
     // was never called.
     for (LoggedNode& node : run_.nodes) {
@@ -74,6 +75,19 @@ class LogReader {
   }
 
  private:
+  // A node that only a header names is that of the log which has lines of it, if there is one.
+  void drop_others() {
+    std::vector<LoggedNode> kept;
+    for (const LoggedNode& node : run_.nodes) {
+      const auto better = [&](const LoggedNode& other) {
+        const bool earlier = &other < &node && !node.logged;
+        return other.name == node.name && (other.logged > node.logged || earlier);
+      };
+      if (std::ranges::none_of(run_.nodes, better)) kept.push_back(node);
+    }
+    run_.nodes = std::move(kept);
+  }
+
   // Returns whether the line is about the link itself, not a frame.
   static bool is_state(const Line& line) {
     const std::string& name = line.message.name;

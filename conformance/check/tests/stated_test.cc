@@ -183,6 +183,30 @@ TEST(Stated, ALogStatesNothingOfTheNodesOfACaptureBesideIt) {
   EXPECT_EQ(too_early("", "join_period=400", users), "mote 3");
 }
 
+// A header that only names a node says nothing of it that another log says.
+TEST(Stated, ANodeIsThatOfTheLogThatHasLinesOfIt) {
+  const auto asks = [](int tick, const std::string& mote) {
+    return at(tick, "m" + mote + " > rA am=" + mote +
+                        "->1 join_request(seq_num=7 mote_type=1 transducers=1 actuators=1)");
+  };
+  const std::string one = "%rtr 1\n%node m5 mote id=5 iut\n%node m6 mote id=6\ncase one\n" +
+                          asks(0, "5") + asks(500, "5");
+  const std::string other =
+      "%rtr 1\n%node m5 mote id=5\n%node m6 mote id=6 join_period=1000 iut\ncase other\n" +
+      asks(100, "6") + asks(600, "6");
+  for (const bool turned : {false, true}) {
+    RunReader reader;
+    std::string error;
+    EXPECT_TRUE(reader.add_bytes("one", turned ? other : one, error)) << error;
+    EXPECT_TRUE(reader.add_bytes("two", turned ? one : other, error)) << error;
+    std::string out;
+    for (const Finding& finding : judge(reader.finish(), {}).findings) {
+      if (finding.severity == Severity::kFail) out += finding.node;
+    }
+    EXPECT_EQ(out, "mote 6") << turned;
+  }
+}
+
 // How long a sink may be late with a reply (decision 125) is up to the mote that waits for it.
 TEST(Stated, AReplyIsMissingOnceTheCallOfItsMoteIsOver) {
   const auto late = [](const std::string& sink, const std::string& mote) {
