@@ -72,7 +72,7 @@ struct Options {
   bool deployed = false;          ///< The profile.
   bool sniffer_complete = false;  ///< Every frame on the air was captured.
   bool start_cold = false;        ///< Nothing had happened before the first frame.
-  /// Stated of every node; what logs state of theirs comes after it, then the profile.
+  /// Stated of every node; what the log of a node states of it comes after it, then the profile.
   trace::Statement stated = {};
   /// Stated response time (decision 125); unstated, the profile's.
   std::optional<std::int64_t> response_us;
@@ -97,12 +97,13 @@ struct LoggedNode {
   machine::Role role = machine::Role::kMote;
   std::uint16_t id = 0;
   std::uint16_t island = kNoIsland;
+  /// Of the node alone; of one that the trace plays, what those under test state.
+  trace::Statement stated = {};
   bool under_test = true;      ///< If a log marks some nodes as under test, the others are not.
   bool application = false;    ///< The log has its application's calls and events.
   bool hearing = false;        ///< The log has what its radio was given; a base station's lines.
   bool logged = false;         ///< The log has lines of it; else only a header names it.
-  bool whole = false;          ///< The log has all that it got and did.
-  std::uint8_t channels = 0;   ///< Synaptic channels of each direction; 0: not said.
+  bool whole = false;          ///< The log has all that it got and did (decision 13).
   bool peis = false;           ///< The log has its lines of PEIS.
   std::vector<BusyTime> busy;  ///< In order of their beginning.
   std::vector<std::int64_t> link_acks_us;      ///< When its link told it of an acknowledgement.
@@ -171,9 +172,6 @@ struct RunStorage;
 struct Run {
   std::vector<std::string> files;
   std::vector<LoggedNode> nodes;
-  /// What logs state of their nodes under test; `channels` are not seen.
-  trace::Statement stated = {};
-  bool all_stated = false;             ///< Other values are the profile's, by a log that is whole.
   std::int64_t watched_until_us = -1;  ///< By a log that is whole: its end.
   /// A log marks nodes as under test: the trace plays everybody else.
   bool marked = false;

@@ -1,5 +1,6 @@
 #include "conformance/check/input/read_trace.h"
 
+#include <algorithm>
 #include <map>
 #include <set>
 
@@ -35,7 +36,6 @@ class LogReader {
     bool applications = false;
     for (const trace::NodeHeader& header : scope_.nodes) marked = marked || header.iut;
     for (const trace::NodeHeader& header : scope_.nodes) {
-      if (!marked || header.iut) take_statement(header);
       LoggedNode node;
       node.name = header.name;
       node.file = static_cast<std::uint32_t>(run_.files.size() - 1);
@@ -43,8 +43,10 @@ class LogReader {
       node.id = header.id.value_or(0);
       node.island = header.island.value_or(kNoIsland);
       node.under_test = !marked || header.iut;
-      if (const std::int64_t* const said = find(header.stated, trace::ParameterId::kChannels)) {
-        node.channels = static_cast<std::uint8_t>(*said);
+      node.stated = header.stated;
+      // Whom the trace plays is taken for the like of those under test, as the runner does.
+      for (const trace::NodeHeader& other : scope_.nodes) {
+        if (marked && !header.iut && other.iut) node.stated = joined(node.stated, other.stated);
       }
       for (const Line* line : lines_) {
         if (line->node != header.name) continue;
@@ -58,12 +60,12 @@ class LogReader {
       if (header.whole) {
         node.whole = node.logged = node.application = node.hearing = true;
         node.peis = header.role == trace::Role::kBaseStation;
-        run_.all_stated = true;
       }
       run_.nodes.push_back(std::move(node));
       applications = applications || run_.nodes.back().application;
     }
     run_.marked = run_.marked || marked;
+    drop_others();
     // If a log has applications, a node with radio input has its application as well, even if that
     // was never called.
     for (LoggedNode& node : run_.nodes) {
@@ -73,18 +75,17 @@ class LogReader {
   }
 
  private:
-  // One statement holds for all nodes of a run. The number of channels is each node's own, and is
-  // not judged.
-  void take_statement(const trace::NodeHeader& node) {
-    for (const trace::Stated& one : node.stated) {
-      if (one.id == trace::ParameterId::kChannels) continue;
-      const std::int64_t* const said = find(run_.stated, one.id);
-      if (said && *said != one.value) {
-        throw trace::TraceError(
-            {}, "nodes state different values of " + std::string(trace::parameter(one.id).name));
-      }
-      if (!said) run_.stated.push_back(one);
+  // A node that only a header names is that of the log which has lines of it, if there is one.
+  void drop_others() {
+    std::vector<LoggedNode> kept;
+    for (const LoggedNode& node : run_.nodes) {
+      const auto better = [&](const LoggedNode& other) {
+        const bool earlier = &other < &node && !node.logged;
+        return other.name == node.name && (other.logged > node.logged || earlier);
+      };
+      if (std::ranges::none_of(run_.nodes, better)) kept.push_back(node);
     }
+    run_.nodes = std::move(kept);
   }
 
   // Returns whether the line is about the link itself, not a frame.
@@ -117,7 +118,8 @@ class LogReader {
 
   void take(const Line& line) {
     const std::int64_t time_us = time_of(line);
-    const bool watched = run_.all_stated && line.op == Op::kMustNot;
+    const bool watched =
+        line.op == Op::kMustNot && std::ranges::any_of(scope_.nodes, &trace::NodeHeader::whole);
     if (watched && line.time.base == trace::Time::Base::kStart) {
       run_.watched_until_us = std::max(run_.watched_until_us, us_of(line.time.to + 1));
     }

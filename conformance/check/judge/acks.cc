@@ -124,7 +124,8 @@ void Acks::surely(std::uint16_t node, const Net& net, std::int64_t now_us, bool 
   }
 }
 
-void Acks::sent(std::uint16_t node, const Observation& seen, const Net& ack) {
+void Acks::sent(std::uint16_t node, const Observation& seen, const Net& ack,
+                std::int64_t timeout_us) {
   const std::int64_t now = seen.place.time_us;
   const std::int32_t acked = machine::acked_seq_num(ack.body());
   Ring<Arrived, kRoom>& ring = arrived_[node];
@@ -151,10 +152,10 @@ void Acks::sent(std::uint16_t node, const Observation& seen, const Net& ack) {
   ++best->acks;
   const std::int64_t took = now - std::max(best->whole_us, best->again_us);
   // What is acked did arrive, perhaps later. What surely came at once was acked late, which passes.
-  if (best->must_ack && !best->sure && best->copies == 1 && took > context_.response_us()) {
+  if (best->must_ack && !best->sure && best->copies == 1 && took > context_.response_us(node)) {
     context_.report("T2-ACK"_rule, Severity::kInconclusive, seen.place, node,
                     {"The ack of " + name_of(best->net) + " comes after " + ms_text(took) + ".",
-                     "Within " + ms_text(context_.response_us()) + ".",
+                     "Within " + ms_text(context_.response_us(node)) + ".",
                      {}});
   }
   if (best->net.app_id != ack.app_id || ack.reliable != 0) {
@@ -166,11 +167,10 @@ void Acks::sent(std::uint16_t node, const Observation& seen, const Net& ack) {
     return;
   }
   // What stopped it, a busy line or application or a radio that was off, is no fault of the node.
-  if (took > context_.ack_timeout_us() && best->must_ack &&
-      now > context_.due_us(node, best->whole_us)) {
+  if (took > timeout_us && best->must_ack && now > context_.due_us(node, best->whole_us)) {
     context_.report("T2-PROMPT"_rule, Severity::kWeak, seen.place, node,
                     {"The ack of " + name_of(best->net) + " comes after " + ms_text(took) + ".",
-                     "Before the sender's timeout, " + ms_text(context_.ack_timeout_us()) + ".",
+                     "Before the sender's timeout, " + ms_text(timeout_us) + ".",
                      {}});
   }
   if (best->sure && best->copies == 1) {
@@ -424,10 +424,10 @@ std::int64_t Acks::queued_us(std::uint16_t node, const Arrived& arrived) {
   std::int64_t before = 0;
   for (std::size_t i = 0; i < ring.size(); ++i) {
     const Arrived& other = ring.oldest(i);
-    const bool just = arrived.whole_us - other.whole_us <= context_.response_us();
+    const bool just = arrived.whole_us - other.whole_us <= context_.response_us(node);
     before += other.ackable && other.order < arrived.order && just ? 1 : 0;
   }
-  return before * context_.response_us();
+  return before * context_.response_us(node);
 }
 
 // Reports an ack that surely is owed and, by `now_us`, overdue.
@@ -449,12 +449,12 @@ void Acks::missing_ack(std::uint16_t node, Arrived& arrived, std::int64_t now_us
   } else if (by_radio) {
     severity = context_.without(node, arrived.place.time_us, now_us);
   }
-  context_.report(
-      "T2-ACK"_rule, context_.on_line(node, severity), arrived.place, node,
-      {"It surely received " + name_of(arrived.net) + ", reliable, and sent no ack within " +
-           ms_text(context_.response_us()) + (lives ? ", though it sent other frames later." : "."),
-       "An ack.",
-       {}});
+  context_.report("T2-ACK"_rule, context_.on_line(node, severity), arrived.place, node,
+                  {"It surely received " + name_of(arrived.net) +
+                       ", reliable, and sent no ack within " + ms_text(context_.response_us(node)) +
+                       (lives ? ", though it sent other frames later." : "."),
+                   "An ack.",
+                   {}});
 }
 
 // Returns whether a copy of the message was delivered before it (decision 111).
@@ -483,7 +483,7 @@ bool Acks::lacks_delivery(std::uint16_t node, const Arrived& arrived) {
 bool Acks::overtaken(std::uint16_t node, const Arrived& arrived) {
   if (arrived.overtaken_us < 0 || context_.device(node).role != machine::Role::kMote) return false;
   const std::int64_t since_us =
-      context_.held_since_us(node, arrived.whole_us) - 2 * context_.response_us();
+      context_.held_since_us(node, arrived.whole_us) - 2 * context_.response_us(node);
   std::size_t before = 0;
   Ring<Arrived, kRoom>& ring = arrived_[node];
   for (std::size_t i = 0; i < ring.size(); ++i) {
@@ -497,7 +497,7 @@ bool Acks::overtaken(std::uint16_t node, const Arrived& arrived) {
 void Acks::missing_delivery(std::uint16_t node, Arrived& arrived, std::int64_t now_us) {
   // What was overtaken waits for nothing any more (decision 125), however busy its node is.
   const bool overtaken = this->overtaken(node, arrived);
-  const std::int64_t due_us = overtaken ? arrived.overtaken_us + context_.response_us()
+  const std::int64_t due_us = overtaken ? arrived.overtaken_us + context_.response_us(node)
                                         : context_.due_us(node, arrived.whole_us);
   if (now_us <= due_us || !lacks_delivery(node, arrived)) return;
   // A busy application, or what waits for it, may have filled the buffer.
@@ -513,7 +513,7 @@ void Acks::missing_delivery(std::uint16_t node, Arrived& arrived, std::int64_t n
                    : Severity::kFail,
       arrived.place, node,
       {"The node was given " + name_of(arrived.net) + (acked ? ", acked it" : "") +
-           ", and its application did not get it within " + ms_text(context_.response_us()) +
+           ", and its application did not get it within " + ms_text(context_.response_us(node)) +
            (nothing ? ", nor its sender an ack." : ".") +
            (cut ? " It ended after its nbytes." : ""),
        nothing ? "A delivery and an ack." : "A delivery.",

@@ -99,8 +99,9 @@ class Acks {
   /// Notes that by a log the node received the message.
   /// `may`: it is on then, and may be a member, whatever it was when the message was sent.
   void surely(std::uint16_t node, const Net& net, std::int64_t now_us, bool may, bool no_room);
-  /// Judges an ack that `node` sends as a message of its own.
-  void sent(std::uint16_t node, const Observation& seen, const Net& ack);
+  /// Judges an ack that `node` sends as a message of its own; who gets it waits `timeout_us` for
+  /// it.
+  void sent(std::uint16_t node, const Observation& seen, const Net& ack, std::int64_t timeout_us);
   /// Judges a message that by a log the application of `node` got.
   void delivered(std::uint16_t node, const Observation& seen, const machine::Received& received);
   /// Judges by a log whether the application of `node` is told of this ack in the order of arrival.

@@ -125,10 +125,10 @@ void Announcements::announce(SinkWatch& sink, const Place& at, machine::Address 
   }
   joins_.keep(sink, watch, next_, at);
   const std::size_t members = joins_.listed(sink);
-  if (members > context_.profile().members_max) {
+  if (members > context_.profile(sink.device).members_max) {
     context_.report("J3-FULL"_rule, Severity::kWeak, at, sink.device,
                     {"Member " + number(members) + " of the sink is announced.",
-                     "At most " + number(context_.profile().members_max) + " members.",
+                     "At most " + number(context_.profile(sink.device).members_max) + " members.",
                      {}});
   }
 }
@@ -255,7 +255,8 @@ void Announcements::overdue_reports(SinkWatch& sink, std::int64_t end_us) {
         {"The ack_join of mote " + number(am) +
              (whole ? " was received (by the sink's log)"
                     : " was received (the link acknowledged it)") +
-             ", and no serial_joined followed within " + ms_text(context_.response_us()) +
+             ", and no serial_joined followed within " +
+             ms_text(context_.response_us(sink.device)) +
              (whole ? "." : ", though the sink sent other frames later."),
          "One serial_joined for the new member.",
          {}});
@@ -266,7 +267,7 @@ void Announcements::overdue_reports(SinkWatch& sink, std::int64_t end_us) {
 // messages than go into it, or of what waits since longer ago than crowded() looks back.
 bool Announcements::may_be_lost(const SinkWatch& sink, const PairWatch& watch) const {
   const std::int64_t at_us = watch.admitted.time_us;
-  const std::int64_t before_us = at_us - 2 * context_.response_us();
+  const std::int64_t before_us = at_us - 2 * context_.response_us(sink.device);
   constexpr auto kRadio = machine::Link::kRadio;
   return context_.crowded(sink.device, at_us) ||
          (context_.busy(sink.device, before_us, before_us, kRadio) &&
@@ -289,7 +290,7 @@ void Announcements::unannounced(const SinkWatch& sink, std::uint16_t mote_am,
                   {"The sink was given the ack_join of mote " + number(mote_am) +
                        " with the number that it had answered, and does not list the mote: no "
                        "moteJoined followed within " +
-                       ms_text(context_.response_us()) + ".",
+                       ms_text(context_.response_us(sink.device)) + ".",
                    "moteJoined for the new member.",
                    {}});
 }

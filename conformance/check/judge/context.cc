@@ -83,6 +83,11 @@ std::vector<bool> find_lossy_taps(const Run& run, const Identity& who, const Opt
   return find_lossy_taps(run, misses_air(who, options));
 }
 
+Context::Context(const Run& r, const Options& o, const Identity& w, Findings& f)
+    : run(r), options(o), who(w), findings(f), unlogged_(terms_of(o)) {
+  for (const LoggedNode& node : run.nodes) logged_.push_back(terms_of(options, node.stated));
+}
+
 void Context::look_up() {
   down_taps.resize(run.taps.size());
   for (const Observation& seen : run.seen) {
@@ -93,7 +98,7 @@ void Context::look_up() {
     const std::uint16_t sender = who.marks[i].device;
     if (sender != kNobody) last_us[sender] = run.seen[i].place.time_us;
   }
-  sink_am = profile().sink_id;
+  sink_am = profile(kNobody).sink_id;  // Nobody states another.
   mote_of_am.assign(65536, kNobody);
   next_of_am.assign(who.devices.size(), kNobody);
   for (std::size_t i = 0; i < who.devices.size(); ++i) {
@@ -220,11 +225,12 @@ void Context::finish() {
   unseen_.clear();
 }
 
-std::int64_t Context::ack_timeout_us() const {
-  if (options.ack_timeout_us) return *options.ack_timeout_us;
-  // A profile without a timeout describes its nodes, not how long others wait (decision 110).
-  const std::uint16_t own = profile().ack_timeout_ticks;
-  return machine::us_of(own != 0 ? own : machine::Profile{}.ack_timeout_ticks);
+std::uint16_t Context::slowest_mote(std::uint16_t am) const {
+  std::uint16_t out = kNobody;
+  for_motes(am, [&](std::uint16_t mote) {
+    if (out == kNobody || join_call_us(mote) > join_call_us(out)) out = mote;
+  });
+  return out;
 }
 
 const std::vector<BusyTime>& Context::busy_times(std::uint16_t node) const {
@@ -237,26 +243,26 @@ std::int64_t Context::due_us(std::uint16_t node, std::int64_t whole_us,
   // While a line is free for so long one at least of what waits is served, and a buffer holds few.
   std::size_t served = 0;
   std::int64_t free_us = whole_us;
-  std::int64_t due = whole_us + response_us();
+  std::int64_t due = whole_us + response_us(node);
   for (const BusyTime& busy : busy_times(node)) {
     const bool other = line && busy.line && busy.line != line;
     if (other || busy.from_us > due || busy.to_us < whole_us) continue;
     if (busy.to_us == INT64_MAX) return INT64_MAX;
-    if (busy.from_us - free_us >= response_us() && ++served > machine::kRadioRoom) break;
+    if (busy.from_us - free_us >= response_us(node) && ++served > machine::kRadioRoom) break;
     free_us = std::max(free_us, busy.to_us);
-    due = std::max(due, busy.to_us + 2 * response_us());
+    due = std::max(due, busy.to_us + 2 * response_us(node));
   }
   return due;
 }
 
 std::int64_t Context::handled_us(std::uint16_t node, std::int64_t whole_us,
                                  std::int64_t now_us) const {
-  std::int64_t soon_us = whole_us + response_us();
+  std::int64_t soon_us = whole_us + response_us(node);
   if (!device(node).whole) return std::max(soon_us, now_us);
   // What waits for the application is accepted for a line when that takes it, before it leaves now.
   for (const BusyTime& busy : busy_times(node)) {
     if (busy.line || busy.from_us > soon_us || busy.to_us < whole_us) continue;
-    soon_us = std::max(soon_us, std::min(busy.to_us, now_us) + response_us());
+    soon_us = std::max(soon_us, std::min(busy.to_us, now_us) + response_us(node));
   }
   return soon_us;
 }
@@ -305,11 +311,12 @@ std::int64_t Context::held_since_us(std::uint16_t node, std::int64_t time_us) co
 int Context::backlog(std::uint16_t node, std::int64_t time_us) const {
   const std::int64_t since_us = held_since_us(node, time_us);
   const auto begin =
-      std::ranges::lower_bound(run.seen, since_us - 2 * response_us(), {},
+      std::ranges::lower_bound(run.seen, since_us - 2 * response_us(node), {},
                                [](const Observation& seen) { return seen.place.time_us; });
   int waiting = 0;
   int most = 0;
-  for (auto it = begin; it != run.seen.end() && it->place.time_us < time_us + response_us(); ++it) {
+  for (auto it = begin; it != run.seen.end() && it->place.time_us < time_us + response_us(node);
+       ++it) {
     const int change = backlog_of(node, static_cast<std::size_t>(it - run.seen.begin()));
     waiting = std::max(0, waiting + change);
     if (it->place.time_us >= time_us) most = std::max(most, waiting - 1);
@@ -333,7 +340,7 @@ bool Context::crowded(std::uint16_t node, std::int64_t time_us) const {
   }
   // A message that came at most the response time before may still be in a buffer.
   const auto from =
-      std::ranges::upper_bound(run.seen, time_us - std::max(kAroundUs, response_us()), {},
+      std::ranges::upper_bound(run.seen, time_us - std::max(kAroundUs, response_us(node)), {},
                                [](const Observation& seen) { return seen.place.time_us; });
   std::size_t around = 0;
   for (auto it = from; it != run.seen.end() && it->place.time_us < time_us + kAroundUs; ++it) {
@@ -370,12 +377,6 @@ void Context::begin_life(std::uint16_t node) {
   for (const machine::Link line : {machine::Link::kRadio, machine::Link::kSerial}) {
     left_.erase({node, line});
   }
-}
-
-bool Context::ack_timeout_stated() const {
-  constexpr auto kAckTimeout = trace::ParameterId::kAckTimeout;
-  return run.all_stated || options.ack_timeout_us.has_value() ||
-         find(options.stated, kAckTimeout) || find(run.stated, kAckTimeout);
 }
 
 Severity Context::without(std::uint16_t cause, std::int64_t from_us, std::int64_t to_us) const {

@@ -12,6 +12,7 @@
 #include "conformance/check/judge/findings.h"
 #include "conformance/check/message.h"
 #include "conformance/check/observation.h"
+#include "conformance/check/terms.h"
 #include "conformance/machine/actions.h"
 #include "conformance/machine/join.h"
 #include "conformance/machine/ticks.h"
@@ -36,8 +37,7 @@ inline std::int64_t grown_ms_of(std::uint32_t from_ms, std::uint32_t to_ms,
 struct Context {
   static constexpr std::int64_t kRoundedUs = 2;
 
-  Context(const Run& r, const Options& o, const Identity& w, Findings& f)
-      : run(r), options(o), who(w), findings(f) {}
+  Context(const Run& r, const Options& o, const Identity& w, Findings& f);
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;
 
@@ -48,7 +48,6 @@ struct Context {
   std::uint16_t sink_am = 1;  ///< AM address of sinks.
   machine::Actions actions;   ///< For the machine's functions; not read here.
 
-  const machine::Profile& profile() const { return findings.profile(); }
   const Device& device(std::uint16_t i) const { return who.devices[i]; }
   /// The only sink on the air; kNobody if there are none or several.
   std::uint16_t only_sink = kNobody;
@@ -76,16 +75,31 @@ struct Context {
     for (std::uint16_t mote = mote_of_am[am]; mote != kNobody; mote = next_of_am[mote]) call(mote);
   }
 
-  /// Returns how early a timer may look (decision 128). Ticks of logs are rounded to microseconds.
-  std::int64_t early_us() const { return machine::us_of(profile().early_ticks) + kRoundedUs; }
-  std::int64_t join_period_us() const { return machine::us_of(profile().join_period_ticks); }
-  /// Returns how long a joinIsland call takes that sends all its requests.
-  std::int64_t join_call_us() const { return profile().join_requests_max * join_period_us(); }
-  std::int64_t response_us() const {
-    return options.response_us.value_or(machine::us_of(profile().response_ticks)) + run.slack_us;
+  /// Returns what the node is held to; of no log, or kNobody, by the user and the profile.
+  const Terms& terms(std::uint16_t node) const {
+    return node < logged_.size() ? logged_[node] : unlogged_;  // A log's are the first devices.
   }
-  std::int64_t ack_timeout_us() const;
-  bool ack_timeout_stated() const;
+  const machine::Profile& profile(std::uint16_t node) const { return terms(node).profile; }
+  /// Returns how early a timer may look (decision 128). Ticks of logs are rounded to microseconds.
+  std::int64_t early_us(std::uint16_t node) const {
+    return machine::us_of(profile(node).early_ticks) + kRoundedUs;
+  }
+  std::int64_t join_period_us(std::uint16_t mote) const {
+    return machine::us_of(profile(mote).join_period_ticks);
+  }
+  /// Returns how long a joinIsland call takes that sends all its requests.
+  std::int64_t join_call_us(std::uint16_t mote) const {
+    return profile(mote).join_requests_max * join_period_us(mote);
+  }
+  /// Returns the mote of that AM address whose calls take longest; kNobody if none is known.
+  std::uint16_t slowest_mote(std::uint16_t am) const;
+  std::int64_t response_us(std::uint16_t node) const {
+    return terms(node).response_us + run.slack_us;
+  }
+  std::int64_t ack_timeout_us(std::uint16_t node) const { return terms(node).ack_timeout_us; }
+  bool ack_timeout_stated(std::uint16_t node) const {
+    return device(node).whole || terms(node).ack_timeout_stated;
+  }
   /// Returns when an answer to what the node has whole at `whole_us` is overdue. What waited for a
   /// line or an application that was busy, by the node's log, may take as long again behind others.
   /// With `line` only that line and the application count.
@@ -106,9 +120,9 @@ struct Context {
   std::int64_t held_since_us(std::uint16_t node, std::int64_t time_us) const;
   /// Returns the times in which by its log a line or the application of the node was busy.
   const std::vector<BusyTime>& busy_times(std::uint16_t node) const;
-  machine::JoinContext join_context(std::uint16_t id, std::uint16_t island,
+  machine::JoinContext join_context(std::uint16_t node, std::uint16_t island,
                                     std::int64_t now_us) const {
-    return {profile(), id, island, 0, machine::ticks_of(now_us)};
+    return {profile(node), device(node).am, island, 0, machine::ticks_of(now_us)};
   }
 
   /// Returns the severity of "X without an earlier Y of `cause`": kFail only if no Y can have
@@ -150,6 +164,9 @@ struct Context {
   void report_stranger(const Observation& seen, std::uint16_t node);
 
  private:
+  std::vector<Terms> logged_;  // By device.
+  Terms unlogged_;
+
   int backlog_of(std::uint16_t node, std::size_t index) const;
   int backlog(std::uint16_t node, std::int64_t time_us) const;
   /// Findings that are told as one.

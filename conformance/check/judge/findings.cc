@@ -1,37 +1,21 @@
 #include "conformance/check/judge/findings.h"
 
 #include <algorithm>
-#include <cassert>
 #include <tuple>
 #include <utility>
 
-#include "conformance/generated/profiles.h"
-#include "conformance/trace/events/lines.h"
+#include "conformance/check/terms.h"
 
 namespace rubric::check {
-namespace {
-
-const machine::NamedProfile& named(bool deployed) {
-  const machine::NamedProfile* const profile =
-      machine::find_profile(deployed ? "deployed" : "paper");
-  assert(profile != nullptr);  // A static_assert is too much for sanitized builds.
-  return *profile;
-}
-
-}  // namespace
-
 Findings::Findings(bool deployed, const std::vector<ClockStep>& steps,
-                   const trace::Statement& stated, std::vector<std::int64_t> settled_us)
-    : profile_(named(deployed).profile),
-      steps_(steps),
+                   std::vector<std::int64_t> settled_us)
+    : steps_(steps),
       settled_us_(std::move(settled_us)),
       deployed_(deployed),
-      kept_(reflect::requirements().size()) {
-  events::state(profile_, stated);
-}
+      kept_(reflect::requirements().size()) {}
 
 bool Findings::accepted(ReqId requirement) const {
-  for (const machine::AcceptedDifference& difference : named(deployed_).accepted) {
+  for (const machine::AcceptedDifference& difference : profile_of(deployed_).accepted) {
     if (difference.requirement == requirement) return true;
   }
   return false;

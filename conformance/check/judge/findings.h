@@ -9,8 +9,6 @@
 #include "codec/reflect/requirements.h"
 #include "conformance/check/finding.h"
 #include "conformance/check/observation.h"
-#include "conformance/machine/profile.h"
-#include "conformance/trace/parameters.h"
 
 namespace rubric::check {
 
@@ -43,7 +41,7 @@ class Listed {
 class Findings {
  public:
   /// No episode goes on across one of `steps`, or one of the times `settled_us`.
-  Findings(bool deployed, const std::vector<ClockStep>& steps, const trace::Statement& stated = {},
+  Findings(bool deployed, const std::vector<ClockStep>& steps,
            std::vector<std::int64_t> settled_us = {});
 
   /// Adds a finding. Repeats of a rule by a node within 600 ms of the last one are one episode. A
@@ -52,7 +50,6 @@ class Findings {
   /// Counts that a rule could have been broken and was kept.
   void kept(ReqId requirement) { ++kept_[reflect::requirement_index(requirement)]; }
 
-  const machine::Profile& profile() const { return profile_; }
   /// Returns the findings in order of place; dropped() counts those that did not fit.
   std::vector<Finding> take();
   std::uint64_t dropped() const { return dropped_; }
@@ -68,7 +65,6 @@ class Findings {
   // Returns whether what came before is settled by then.
   bool settled(std::int64_t before_us, std::int64_t now_us) const;
 
-  machine::Profile profile_;
   const std::vector<ClockStep>& steps_;
   std::vector<std::int64_t> settled_us_;
   bool deployed_ = false;

@@ -107,16 +107,10 @@ bool append(std::vector<Finding>& all, Listed& listed, Finding finding, std::int
 }  // namespace
 
 std::int64_t horizon_us(const Options& options) {
-  const std::vector<ClockStep> none;
-  const Findings findings(options.deployed, none, options.stated);
-  const machine::Profile& profile = findings.profile();
-  const auto us = [](std::int64_t ticks) {
-    return machine::us_of(static_cast<machine::Ticks>(ticks));
-  };
-  const std::int64_t timeout_us = options.ack_timeout_us.value_or(us(profile.ack_timeout_ticks));
-  const std::int64_t response_us = options.response_us.value_or(us(profile.response_ticks));
-  const std::int64_t longest_us = timeout_us + response_us + options.skew_us + kBuffersUs +
-                                  kJoinPeriods * us(profile.join_period_ticks);
+  const Terms terms = terms_of(options);
+  const std::int64_t longest_us = terms.ack_timeout_us + terms.response_us + options.skew_us +
+                                  kBuffersUs +
+                                  kJoinPeriods * machine::us_of(terms.profile.join_period_ticks);
   return std::max(kHorizonMinUs, kTimesLongest * longest_us);
 }
 

@@ -32,7 +32,8 @@
 
 namespace rubric::check {
 
-/// Returns the horizon that follows from the stated times, at least a minute.
+/// Returns the horizon that follows from the stated times, at least a minute. No node of a run that
+/// is followed has others, as no log is.
 std::int64_t horizon_us(const Options& options);
 
 class Follow {

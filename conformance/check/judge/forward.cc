@@ -277,7 +277,8 @@ bool Forwarding::may_be_anothers(const Line& line, const Net& net) {
 // time, or a line was busy.
 bool Forwarding::crowded(const Line& line, const Passing& passing, Link out) const {
   const std::int64_t from_us = passing.place.time_us;
-  return context_.busy(line.sink, from_us, passing.whole_us + context_.response_us(), out) ||
+  return context_.busy(line.sink, from_us, passing.whole_us + context_.response_us(line.sink),
+                       out) ||
          context_.crowded(line.sink, from_us);
 }
 
@@ -332,7 +333,7 @@ void Forwarding::overdue_down(Line& line, std::int64_t now_us) {
                          " on its serial line and did not radiate it, though it sent other frames "
                          "later.",
                      "A radio frame to " + number(passing.am_dest) + " within " +
-                         ms_text(context_.response_us()) + ".",
+                         ms_text(context_.response_us(line.sink)) + ".",
                      {}});
   }
 }

@@ -22,7 +22,7 @@ Forwarding::Forwarding(Context& context) : context_(context) {
     line.am = device.am;
     line.island = device.set_later ? kNoIsland : device.island;
     line.serial = device.shows_line();
-    line.slack_us = device.whole ? context.response_us() : kIslandSlackUs;
+    line.slack_us = device.whole ? context.response_us(line.sink) : kIslandSlackUs;
   }
 }
 

@@ -275,7 +275,7 @@ void Forwarding::overdue_up(Line& line, std::int64_t now_us) {
         {"The sink received " + name_of(passing.net) + " (" +
              (context_.device(line.sink).hearing ? "by its log" : "the link acknowledged it") +
              ") and did not put it on its serial line, though more came later.",
-         "A forward within " + ms_text(context_.response_us()) + ".",
+         "A forward within " + ms_text(context_.response_us(line.sink)) + ".",
          {}});
   }
 }

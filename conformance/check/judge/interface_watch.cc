@@ -91,7 +91,7 @@ bool InterfaceWatch::off(std::uint16_t device, Link link, std::int64_t now_us) c
   if (link == Link::kPeis) return false;
   const Interface& interface = nodes_[device].interfaces[link == Link::kRadio ? 0 : 1];
   return interface.on.has_value() && !*interface.on &&
-         now_us - interface.changed_us > context_.early_us();
+         now_us - interface.changed_us > context_.early_us(device);
 }
 
 bool InterfaceWatch::switched_off(std::uint16_t device, Link link) const {
@@ -171,7 +171,8 @@ void InterfaceWatch::finish(std::int64_t end_us) {
     const Node& node = nodes_[i];
     for (const Interface& interface : node.interfaces) judge_untold(device, interface, end_us);
     const bool busy = !context_.busy_times(device).empty();
-    if (!node.awaited || busy || end_us - node.accepted.time_us <= context_.response_us()) continue;
+    if (!node.awaited || busy || end_us - node.accepted.time_us <= context_.response_us(device))
+      continue;
     const Severity severity = context_.device(device).hearing
                                   ? Severity::kFail
                                   : context_.without(device, node.accepted.time_us, end_us);

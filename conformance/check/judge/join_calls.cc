@@ -41,9 +41,9 @@ bool JoinCalls::request(std::uint16_t mote, const Observation& seen, const Reque
     context_.report("J1-CALLED"_rule, Severity::kFail, seen.place, mote,
                     {"A join_request without a joinIsland call.", "Silence.", {}});
   }
-  const bool soon =
-      seen.place.timed() && before_at.timed() &&
-      seen.place.time_us - before_at.time_us <= context_.join_period_us() + context_.response_us();
+  const bool soon = seen.place.timed() && before_at.timed() &&
+                    seen.place.time_us - before_at.time_us <=
+                        context_.join_period_us(mote) + context_.response_us(mote);
   if (!calls.logged && soon && before && before->seq_num == request.seq_num &&
       before->descriptor != request.descriptor) {
     context_.report("J1-SEQ"_rule, Severity::kWeak, seen.place, mote,
@@ -59,7 +59,7 @@ bool JoinCalls::request(std::uint16_t mote, const Observation& seen, const Reque
   // line.
   const std::int64_t called_us = calls.called.time_us;
   if (!calls.last || calls.open != 1 || seen.node.empty() ||
-      context_.due_us(mote, called_us) != called_us + context_.response_us()) {
+      context_.due_us(mote, called_us) != called_us + context_.response_us(mote)) {
     return as_member;
   }
   if (fresh && before && before->seq_num == request.seq_num) {
@@ -126,11 +126,11 @@ void JoinCalls::judge_silent(std::uint16_t mote, std::int64_t end_us) {
   if (end_us <= due_us) return;
   calls.asks = false;
   // A call may end before the channel is free again.
-  const std::int64_t runs_us = motes_.expiries_min() * context_.join_period_us();
-  if (due_us > called_us + context_.response_us() && due_us >= called_us + runs_us) return;
+  const std::int64_t runs_us = motes_.expiries_min(mote) * context_.join_period_us(mote);
+  if (due_us > called_us + context_.response_us(mote) && due_us >= called_us + runs_us) return;
   context_.report("J1-REQUEST"_rule, Severity::kFail, calls.called, mote,
                   {"After the call of joinIsland the mote sent no join_request within " +
-                       ms_text(context_.response_us()) + ".",
+                       ms_text(context_.response_us(mote)) + ".",
                    "A join_request, to the sinks' address.",
                    {}});
 }
@@ -163,7 +163,7 @@ void JoinCalls::told(std::uint16_t mote, const Observation& seen, const machine:
   motes_.link_told(mote, now);
   const std::vector<MoteHypothesis> before = set;
   Said said;
-  said.hypotheses = motes_.explanations(before, "");
+  said.hypotheses = motes_.explanations(mote, before, "");
   if (joined.success) {
     for (MoteHypothesis& h : set) {
       const bool own = joined.address.devid == context_.device(mote).am;
@@ -211,7 +211,7 @@ void JoinCalls::told(std::uint16_t mote, const Observation& seen, const machine:
   // another runs.
   const bool waited = std::exchange(calls.waits, false);
   const bool refused = waited || (calls.last && calls.refusable &&
-                                  now - calls.called.time_us <= context_.response_us());
+                                  now - calls.called.time_us <= context_.response_us(mote));
   const auto fits = [&](const MoteHypothesis& h) {
     return h.unknown || h.join.phase == Phase::kOutside ||
            (!h.linked && motes_.may_have_failed(mote, h, now));
@@ -233,11 +233,11 @@ void JoinCalls::told(std::uint16_t mote, const Observation& seen, const machine:
       return !h.unknown && h.join.phase == Phase::kJoining &&
              now > context_.due_us(mote, last_expiry_us(mote, h));
     };
-    if (!refused && context_.run.all_stated && std::ranges::all_of(before, late)) {
+    if (!refused && context_.device(mote).whole && std::ranges::all_of(before, late)) {
       context_.report("J8-FAIL"_rule, Severity::kFail, seen.place, mote,
                       {"joined(FAIL) " + ms_text(now - before.back().first_request_us) +
                            " after the first join_request.",
-                       "Not later than the fifth expiry of the timer.",
+                       fails_by(mote),
                        {}});
     }
     context_.findings.kept("J8-FAIL"_rule);
@@ -257,9 +257,9 @@ void JoinCalls::told(std::uint16_t mote, const Observation& seen, const machine:
   }
   said.text = "joined(FAIL) " + ms_text(now - before.back().first_request_us) +
               " after the first join_request.";
-  const std::uint8_t expiries = motes_.expiries_min();
+  const std::uint8_t expiries = motes_.expiries_min(mote);
   said.expected = "Not before expiry " + number(expiries) + " of the timer, " +
-                  ms_text(expiries * context_.join_period_us()) + ".";
+                  ms_text(expiries * context_.join_period_us(mote)) + ".";
   context_.report("J8-FAIL"_rule, Severity::kFail, seen.place, mote, std::move(said));
 }
 
@@ -278,7 +278,7 @@ bool JoinCalls::judge_late(std::uint16_t mote, const Observation& seen,
   };
   for (const MoteHypothesis& h : set) {
     if (h.unknown || h.told) return false;
-    const std::int64_t from_us = joined_us(h) + context_.response_us();
+    const std::int64_t from_us = joined_us(h) + context_.response_us(mote);
     if (seen.place.time_us <= context_.due_us(mote, from_us)) return false;
   }
   const std::int64_t took_us = seen.place.time_us - joined_us(set.back());
@@ -299,7 +299,7 @@ void JoinCalls::judge_member(std::uint16_t mote, const MoteHypothesis& h, std::i
   // Unconfirmed, the call may wait for the end of all its requests, and fail (decision 102).
   // In a whole log it has the time of a golden trace.
   const bool whole = context_.device(mote).whole;
-  const std::int64_t joined_us = std::max(h.accepted_us, h.acked_us) + context_.response_us();
+  const std::int64_t joined_us = std::max(h.accepted_us, h.acked_us) + context_.response_us(mote);
   const std::int64_t over_us = whole ? joined_us : std::max(last_expiry_us(mote, h), h.acked_us);
   const std::int64_t from = again ? calls.called.time_us : over_us;
   if (end_us <= context_.due_us(mote, from)) return;
@@ -321,21 +321,27 @@ void JoinCalls::judge_member(std::uint16_t mote, const MoteHypothesis& h, std::i
 // request may be late by the response time, and makes all after it late; so do a busy channel and a
 // radio that is off.
 std::int64_t JoinCalls::last_expiry_us(std::uint16_t mote, const MoteHypothesis& h) const {
-  const std::int64_t period_us = context_.join_period_us();
-  const std::int64_t requests = context_.profile().join_requests_max;
+  const std::int64_t period_us = context_.join_period_us(mote);
+  const std::int64_t requests = context_.profile(mote).join_requests_max;
   const std::int64_t left = std::max<std::int64_t>(0, requests - h.join.requests);
   const std::int64_t latest_us =
-      h.first_request_us + requests * (period_us + context_.response_us());
-  std::int64_t over_us = std::max(h.first_request_us + context_.join_call_us(),
+      h.first_request_us + requests * (period_us + context_.response_us(mote));
+  std::int64_t over_us = std::max(h.first_request_us + context_.join_call_us(mote),
                                   std::min(latest_us, h.last_request_us + (left + 1) * period_us)) +
                          calls_[mote].off_us;
   for (const BusyTime& busy : context_.busy_times(mote)) {
     const std::int64_t from_us = std::max(busy.from_us, h.first_request_us);
     if (busy.line == machine::Link::kSerial || busy.to_us <= from_us || from_us > over_us) continue;
     if (busy.to_us == INT64_MAX) return INT64_MAX / 2;
-    over_us += busy.to_us - from_us + 2 * context_.response_us();
+    over_us += busy.to_us - from_us + 2 * context_.response_us(mote);
   }
   return over_us;
+}
+
+// Returns what a call without an answer ends with.
+std::string JoinCalls::fails_by(std::uint16_t mote) const {
+  return "joined(FAIL), not later than expiry " + number(context_.profile(mote).join_requests_max) +
+         " of the timer.";
 }
 
 // Judges a call that by a whole log ran out without an event before the next one.
@@ -350,9 +356,7 @@ void JoinCalls::judge_over(std::uint16_t mote, std::int64_t now_us) {
   if (!std::ranges::all_of(set, over)) return;
   calls.open = 0;
   context_.report("J8-FAIL"_rule, Severity::kFail, calls.called, mote,
-                  {"A joinIsland call ended without any joined event.",
-                   "joined(FAIL), not later than the fifth expiry.",
-                   {}});
+                  {"A joinIsland call ended without any joined event.", fails_by(mote), {}});
 }
 
 void JoinCalls::closes(std::uint16_t mote, std::int64_t end_us) {
@@ -368,14 +372,14 @@ void JoinCalls::closes(std::uint16_t mote, std::int64_t end_us) {
   if (h.first_request_us < 0) return;                         // The begin is unknown.
   if (calls_[mote].logged && calls_[mote].open == 0) return;  // It had its event.
   const std::int64_t over_us =
-      device.whole ? last_expiry_us(mote, h) : h.first_request_us + context_.join_call_us();
+      device.whole ? last_expiry_us(mote, h) : h.first_request_us + context_.join_call_us(mote);
   if (end_us <= context_.due_us(mote, over_us)) return;
   Place at;
   at.time_us = h.first_request_us;
   context_.report("J8-FAIL"_rule, Severity::kFail, at, mote,
                   {"The join that began at " + ms_text(h.first_request_us) + " with number " +
                        number(h.join.seq_num) + " ended without any joined event.",
-                   "joined(FAIL), not later than the fifth expiry.",
+                   fails_by(mote),
                    {}});
 }
 

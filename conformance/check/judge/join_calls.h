@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "conformance/check/judge/mote_join.h"
@@ -50,6 +51,7 @@ class JoinCalls {
   void judge_silent(std::uint16_t mote, std::int64_t end_us);
   bool judge_late(std::uint16_t mote, const Observation& seen,
                   const std::vector<MoteHypothesis>& set);
+  std::string fails_by(std::uint16_t mote) const;
   std::int64_t last_expiry_us(std::uint16_t mote, const MoteHypothesis& h) const;
 
   Context& context_;

@@ -33,7 +33,7 @@ void JoinWatch::radio_set(std::uint16_t node, bool on, std::int64_t now_us) {
   }
   std::erase_if(debts_[node], [&](Debt& debt) {
     const std::int64_t expiry_us =
-        context_.run.seen[debt.index].place.time_us + context_.join_period_us();
+        context_.run.seen[debt.index].place.time_us + context_.join_period_us(node);
     debt.due_us = on ? context_.due_us(node, expiry_us, machine::Link::kRadio) : INT64_MAX;
     return on && expiry_us < now_us;  // Its timer expired while it was off.
   });
@@ -57,13 +57,13 @@ void JoinWatch::asked(std::uint16_t mote, std::uint32_t index) {
   debt.owes = Owes::kRetry;
   debt.index = index;
   debt.due_us =
-      context_.due_us(mote, context_.run.seen[index].place.time_us + context_.join_period_us(),
+      context_.due_us(mote, context_.run.seen[index].place.time_us + context_.join_period_us(mote),
                       machine::Link::kRadio);
   owe(mote, debt);
 }
 
 void JoinWatch::repeats(std::uint16_t mote, std::int64_t now_us) {
-  if (!context_.run.all_stated) return;
+  if (!context_.device(mote).whole) return;
   std::erase_if(debts_[mote], [&](const Debt& debt) {
     if (debt.owes != Owes::kRetry || now_us <= debt.due_us || !still_owed(mote, debt)) return false;
     const std::int64_t from = context_.run.seen[debt.index].place.time_us;
@@ -83,9 +83,18 @@ void JoinWatch::asks_again(std::uint16_t mote, std::uint16_t seq_num, std::int64
   if (!log && std::ranges::any_of(debts_[mote], same)) settle(mote, now_us, false);
 }
 
-// A late answer is legal (decision 125): it is missing once the mote's call is over.
+// Returns how long the mote that asked waits for a reply: its timer runs, not the sink's.
+std::int64_t JoinWatch::waits_us(const Debt& debt) const {
+  return context_.join_call_us(context_.slowest_mote(debt.mote_am));
+}
+
+// A late answer is legal (decision 125): it is missing once the mote's call is over, here the
+// longest of them all.
 void JoinWatch::hears_on(std::uint16_t sink, std::int64_t now_us) {
-  if (!context_.device(sink).hearing) settle(sink, now_us - context_.join_call_us(), false);
+  if (context_.device(sink).hearing) return;
+  std::int64_t longest_us = 0;
+  for (const Debt& debt : debts_[sink]) longest_us = std::max(longest_us, waits_us(debt));
+  settle(sink, now_us - longest_us, false);
 }
 
 void JoinWatch::surely_asked(std::uint16_t sink, std::uint32_t index, std::uint16_t seq_num) {
@@ -138,8 +147,9 @@ void JoinWatch::surely_offered(std::uint16_t mote, std::uint32_t index, const Re
 bool JoinWatch::still_owed(std::uint16_t node, const Debt& debt) {
   const Observation& cause = context_.run.seen[debt.index];
   const std::int64_t from = cause.place.time_us;
-  const std::uint8_t requests_min =
-      context_.run.all_stated ? context_.profile().join_requests_max : motes_.expiries_min();
+  const std::uint8_t requests_min = context_.device(node).whole
+                                        ? context_.profile(node).join_requests_max
+                                        : motes_.expiries_min(node);
   if (debt.owes != Owes::kReply) {
     const auto owes = [&](const MoteHypothesis& h) {
       if (h.unknown) return false;
@@ -149,7 +159,7 @@ bool JoinWatch::still_owed(std::uint16_t node, const Debt& debt) {
       }
       // Requests that had to wait since the call may have been used up.
       const std::int64_t waited =
-          (h.first_request_us - motes_.began_us(node, h)) / context_.join_period_us();
+          (h.first_request_us - motes_.began_us(node, h)) / context_.join_period_us(node);
       return h.join.phase == Phase::kJoining && h.last_request_us == from &&
              h.join.requests + waited < requests_min;
     };
@@ -186,7 +196,7 @@ void JoinWatch::settle(std::uint16_t node, std::int64_t now_us, bool end) {
     // whole a late reply is legal (decision 125): it is missing once the mote's call is over, or
     // when a later one was sent.
     const bool patient = debt.owes == Owes::kReply && device.hearing && !device.whole && !end;
-    const std::int64_t waits_us = patient && !debt.overtaken ? context_.join_call_us() : 0;
+    const std::int64_t waits_us = patient && !debt.overtaken ? this->waits_us(debt) : 0;
     if (now_us <= debt.due_us + waits_us && (!end || device.hearing)) return false;
     if (!still_owed(node, debt)) return true;
     const std::int64_t from = context_.run.seen[debt.index].place.time_us;
@@ -222,14 +232,14 @@ void JoinWatch::missing(std::uint16_t node, const Debt& debt, Severity severity)
   const Observation& cause = context_.run.seen[debt.index];
   const bool log = context_.device(node).hearing;
   const std::string proof = log ? "was given" : "received (the link acknowledged it)";
-  const std::string within = "within " + ms_text(context_.response_us()) + ".";
+  const std::string within = "within " + ms_text(context_.response_us(node)) + ".";
   switch (debt.owes) {
     case Owes::kRetry:
       context_.report(
           "J8-RETRY"_rule, severity, cause.place, node,
           {"No join_request follows this one in time, no reply came that the mote could "
            "accept, and requests remain.",
-           "The join_request again, " + ms_text(context_.join_period_us()) + " after the last.",
+           "The join_request again, " + ms_text(context_.join_period_us(node)) + " after the last.",
            {}});
       return;
     case Owes::kAck:

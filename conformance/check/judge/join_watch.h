@@ -56,6 +56,7 @@ class JoinWatch {
   };
 
   bool waits(std::uint16_t node) const;
+  std::int64_t waits_us(const Debt& debt) const;
   void owe(std::uint16_t node, const Debt& debt);
   bool still_owed(std::uint16_t node, const Debt& debt);
   bool forgets(std::uint16_t node, const Debt& debt);

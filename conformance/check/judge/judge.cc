@@ -10,8 +10,7 @@ using Kind = Observation::Kind;
 Judge::Judge(const Run& run, const Options& options)
     : run_(run),
       who_(identify(run, options)),
-      findings_(options.deployed, run.steps, trace::joined(options.stated, run.stated),
-                run.past.settled_us),
+      findings_(options.deployed, run.steps, run.past.settled_us),
       context_(run, options, who_, findings_),
       motes_((context_.look_up(), context_), who_.devices.size()),
       join_calls_(context_, motes_, who_.devices.size()),
@@ -431,7 +430,9 @@ void Judge::own_message(std::uint16_t node, const Observation& seen, const Net& 
                         machine::Link link, machine::Address own) {
   interfaces_.own_message(node, seen, net.seq_num);
   originals_.sent(node, seen, net, link, own);
-  if (net.is_ack()) acks_.sent(node, seen, net);  // Late, it is not missing (decision 125).
+  if (net.is_ack())
+    acks_.sent(node, seen, net,
+               ack_timeout_us(net.dest));  // Late, it is not missing (decision 125).
   acks_.showed_life(node, seen.place.time_us);
   if (net.sound && net.trans_id == component::kSynChannel) synaptic_.sent(node, seen, net);
 }

@@ -135,6 +135,20 @@ void Judge::given_off(const Observation& seen, const Mark& mark, const Net& net)
                              off ? mark.receiver : kNobody);
 }
 
+// Returns how long the node of that address waits for an ack: its timer runs, not that of the node
+// that acks. Of several, or where islands are not known, it is the longest.
+std::int64_t Judge::ack_timeout_us(machine::Address address) const {
+  std::int64_t longest_us = -1;
+  for (std::uint16_t node = 0; node < run_.nodes.size(); ++node) {  // No other states one.
+    const bool base = is(node, Role::kBaseStation);
+    const std::uint16_t island = address_of(node).pid;
+    if ((base ? machine::kNullDevid : who_.devices[node].am) != address.devid) continue;
+    if (island != address.pid && island != kNoIsland) continue;
+    longest_us = std::max(longest_us, context_.ack_timeout_us(node));
+  }
+  return longest_us >= 0 ? longest_us : context_.ack_timeout_us(kNobody);
+}
+
 // Counts an ack at the originator of the acked message.
 void Judge::ack_comes(const Net& ack) {
   const std::int32_t acked = machine::acked_seq_num(ack.body());

@@ -28,6 +28,7 @@ class Judge {
  private:
   bool is(std::uint16_t device, machine::Role role) const;
   machine::Address address_of(std::uint16_t node) const;
+  std::int64_t ack_timeout_us(machine::Address address) const;
   void look(std::uint32_t index);
   // Judges what a node should have done by now, where its log has all that it did.
   void overdue(std::uint16_t device, std::int64_t now_us);

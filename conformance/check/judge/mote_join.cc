@@ -45,8 +45,8 @@ void MoteJoins::begin_life(std::uint16_t mote) {
   motes_[mote].set.push_back(MoteHypothesis{});
 }
 
-std::uint8_t MoteJoins::expiries_min() const {
-  return std::min<std::uint8_t>(4, context_.profile().join_requests_max);
+std::uint8_t MoteJoins::expiries_min(std::uint16_t mote) const {
+  return std::min<std::uint8_t>(4, context_.profile(mote).join_requests_max);
 }
 
 std::int64_t MoteJoins::began_us(std::uint16_t mote, const MoteHypothesis& h) const {
@@ -59,14 +59,14 @@ std::int64_t MoteJoins::began_us(std::uint16_t mote, const MoteHypothesis& h) co
 
 bool MoteJoins::may_have_failed(std::uint16_t mote, const MoteHypothesis& h,
                                 std::int64_t now_us) const {
-  const std::int64_t expiries = expiries_min() * context_.join_period_us();
-  return now_us - began_us(mote, h) >= expiries - context_.early_us();
+  const std::int64_t expiries = expiries_min(mote) * context_.join_period_us(mote);
+  return now_us - began_us(mote, h) >= expiries - context_.early_us(mote);
 }
 
 // Applies a request to a hypothesis. Returns false if the hypothesis does not allow it.
 bool MoteJoins::next_request(std::uint16_t mote, const MoteHypothesis& h, std::int64_t now_us,
                              const Request& request, std::vector<MoteHypothesis>& out) {
-  machine::JoinContext join_context = context_.join_context(context_.device(mote).am, 0, now_us);
+  machine::JoinContext join_context = context_.join_context(mote, 0, now_us);
   const auto fresh_call = [&] {
     MoteHypothesis next;
     machine::call_join(next.join, join_context, request.descriptor, request.seq_num,
@@ -81,7 +81,7 @@ bool MoteJoins::next_request(std::uint16_t mote, const MoteHypothesis& h, std::i
   if (h.join.phase == Phase::kMember && (h.sent || h.confirmed || h.linked || h.told)) {
     return false;
   }
-  const std::int64_t least_us = context_.join_period_us() - context_.early_us();
+  const std::int64_t least_us = context_.join_period_us(mote) - context_.early_us(mote);
   const bool in_time = now_us - h.last_request_us >= least_us;
   bool any = false;
   MoteHypothesis again = h;
@@ -143,7 +143,7 @@ void MoteJoins::link_told(std::uint16_t mote, std::int64_t now_us) {
   for (MoteHypothesis& h : motes_[mote].set) {
     if (h.join.phase != Phase::kMember || h.acks_seen == 0) continue;
     const std::int64_t first_us = h.acks_seen == 1 ? h.acked_us : h.accepted_us;
-    const std::int64_t last_us = std::min(now_us, h.acked_us + context_.response_us());
+    const std::int64_t last_us = std::min(now_us, h.acked_us + context_.response_us(mote));
     const auto its = [&](std::int64_t at_us) { return at_us >= first_us && at_us <= last_us; };
     h.linked = h.linked || std::ranges::any_of(context_.run.nodes[mote].link_acks_us, its);
   }
@@ -162,13 +162,13 @@ void MoteJoins::refuse_request(std::uint16_t mote, const Observation& seen, cons
   // reboots.
   const bool sure = same || context_.device(mote).whole;
   Severity severity = sure ? Severity::kFail : Severity::kInconclusive;
-  const std::int64_t period = context_.join_period_us();
+  const std::int64_t period = context_.join_period_us(mote);
   // A timer that runs on keeps its beat. Of calls a log of the application tells.
   const std::int64_t beat =
       (h.last_request_us - h.first_request_us) / std::max(1, h.join.requests - 1);
-  const bool again = same && h.join.phase == Phase::kJoining &&
-                     !context_.device(mote).application &&
-                     now - h.last_request_us > std::max(period, 2 * beat) + context_.response_us();
+  const bool again =
+      same && h.join.phase == Phase::kJoining && !context_.device(mote).application &&
+      now - h.last_request_us > std::max(period, 2 * beat) + context_.response_us(mote);
   if (h.join.phase == Phase::kMember) {
     rule = as_member ? "J8-JOINED"_rule : "J5-STOP"_rule;
     // A link ack on the air alone may not have come (decision 102).
@@ -176,10 +176,10 @@ void MoteJoins::refuse_request(std::uint16_t mote, const Observation& seen, cons
     said.text = "A join_request with number " + number(request.seq_num) +
                 " although the mote has joined " + text_of(h.join.address) + ".";
     said.expected = "No join_request of a mote that is joined.";
-  } else if (now - h.last_request_us < period - context_.early_us()) {
+  } else if (now - h.last_request_us < period - context_.early_us(mote)) {
     said.text = "A join_request " + ms_text(now - h.last_request_us) + " after the one before it.";
     said.expected = "At least " + ms_text(period) + " between them (" +
-                    ms_text(context_.early_us()) + " less is tolerated).";
+                    ms_text(context_.early_us(mote)) + " less is tolerated).";
   } else if (again) {
     rule = "J1-SEQ"_rule;
     severity = Severity::kWeak;
@@ -192,9 +192,9 @@ void MoteJoins::refuse_request(std::uint16_t mote, const Observation& seen, cons
     if (h.renumbered) severity = Severity::kInconclusive;
     said.text = "The " + number(h.join.requests + 1U) + "th join_request of one call (number " +
                 number(request.seq_num) + ").";
-    said.expected = "At most " + number(context_.profile().join_requests_max) + ", then FAIL.";
+    said.expected = "At most " + number(context_.profile(mote).join_requests_max) + ", then FAIL.";
   }
-  said.hypotheses = explanations(watch.set, said.text);
+  said.hypotheses = explanations(mote, watch.set, said.text);
   context_.report(rule, severity, seen.place, mote, std::move(said));
   // Go on from what was seen: the call runs, and this was its latest request.
   MoteHypothesis next = h;
@@ -231,11 +231,11 @@ void MoteJoins::reply(std::uint16_t mote, const Observation& seen, std::uint32_t
     // As long as an answer may take it may choose among offers.
     const bool chooses = h.join.phase == Phase::kMember && h.acks_seen == 0 && !h.told && !h.sent &&
                          h.join.address.pid != reply.island &&
-                         now - h.accepted_us <= context_.response_us();
+                         now - h.accepted_us <= context_.response_us(mote);
     if (chooses) heard.join.phase = Phase::kJoining;
     const JoinSend send =
-        machine::hear_reply(heard.join, context_.join_context(device.am, 0, now), offered,
-                            reply.seq_num, seen.frame.src, context_.actions);
+        machine::hear_reply(heard.join, context_.join_context(mote, 0, now), offered, reply.seq_num,
+                            seen.frame.src, context_.actions);
     if (send != JoinSend::kAck) {
       next_.push_back(h);
       asked_for = asked_for || h.join.seq_num == reply.seq_num;
@@ -294,7 +294,7 @@ std::uint16_t MoteJoins::sink_of(std::uint16_t island) const {
 }
 
 // Returns the rule that forbids this ack_join to the hypothesis; kNone if it is allowed.
-ReqId MoteJoins::why_not_ack(const MoteHypothesis& h, const Observation& seen,
+ReqId MoteJoins::why_not_ack(std::uint16_t mote, const MoteHypothesis& h, const Observation& seen,
                              const AckJoin& ack) const {
   if (h.unknown) return ReqId::kNone;
   if (h.join.phase != Phase::kMember) return "J4-JOINED"_rule;
@@ -309,9 +309,9 @@ ReqId MoteJoins::why_not_ack(const MoteHypothesis& h, const Observation& seen,
   }
   if (seen.frame.dest != context_.sink_am) return "J4-CONTENT"_rule;
   if (h.acks_seen == 0 || !seen.place.timed()) return ReqId::kNone;
-  const std::int64_t last = std::max(h.last_request_us, h.accepted_us + context_.response_us());
+  const std::int64_t last = std::max(h.last_request_us, h.accepted_us + context_.response_us(mote));
   const std::int64_t whole_us = last + kAirMaxUs;  // The mote counts from the end of the frame.
-  if (seen.place.time_us > whole_us + context_.join_period_us() + context_.early_us()) {
+  if (seen.place.time_us > whole_us + context_.join_period_us(mote) + context_.early_us(mote)) {
     return "J4-REPEAT"_rule;
   }
   return h.acks_seen > kAckJoinsMax ? "J4-REPEAT"_rule : ReqId::kNone;
@@ -325,7 +325,7 @@ void MoteJoins::ack_join(std::uint16_t mote, const Observation& seen, const AckJ
     MoteHypothesis next = h;
     // Of such an offer it may have taken the island alone.
     if (h.void_offer && ack.src.devid == seen.frame.src) next.join.address.devid = ack.src.devid;
-    if (why_not_ack(next, seen, ack) != ReqId::kNone) continue;
+    if (why_not_ack(mote, next, seen, ack) != ReqId::kNone) continue;
     if (h.unknown) {
       next.join.phase = Phase::kMember;
       next.join.address = ack.src;
@@ -374,14 +374,14 @@ void MoteJoins::refuse_ack(std::uint16_t mote, const Observation& seen, const Ac
   MoteWatch& watch = motes_[mote];
   const std::int64_t now = seen.place.time_us;
   const MoteHypothesis& h = watch.set.back();
-  ReqId rule = why_not_ack(h, seen, ack);
+  ReqId rule = why_not_ack(mote, h, seen, ack);
   Said said;
-  said.hypotheses = explanations(watch.set, "ack_join with " + ack_text(ack) + ".");
+  said.hypotheses = explanations(mote, watch.set, "ack_join with " + ack_text(ack) + ".");
   Severity severity = Severity::kFail;
   if (rule == "J4-REPEAT"_rule) {
     said.text = "The same ack_join again, " + ms_text(now - h.accepted_us) + " after the reply.";
-    said.expected =
-        "Repeats within one join period (" + ms_text(context_.join_period_us()) + "), at most 20.";
+    said.expected = "Repeats within one join period (" + ms_text(context_.join_period_us(mote)) +
+                    "), at most 20.";
     severity = context_.without(mote, h.acked_us, now);  // It may have asked again in between.
   } else if (h.join.phase == Phase::kMember) {
     said.text =
@@ -481,7 +481,7 @@ void MoteJoins::net_msg(std::uint16_t mote, const Observation& seen, const Net& 
     return;
   }
   Said said;
-  said.hypotheses = explanations(before, "A net_msg from " + text_of(net.src) + " came.");
+  said.hypotheses = explanations(mote, before, "A net_msg from " + text_of(net.src) + " came.");
   const MoteHypothesis h_before = before.back();
   const MoteHypothesis& h = h_before;
   const bool member = h.join.phase == Phase::kMember;
@@ -531,11 +531,12 @@ bool MoteJoins::surely_member(std::uint16_t mote) const {
   return address(mote) && (set[0].told || set[0].sent);
 }
 
-std::vector<Hypothesis> MoteJoins::explanations(const std::vector<MoteHypothesis>& set,
+std::vector<Hypothesis> MoteJoins::explanations(std::uint16_t mote,
+                                                const std::vector<MoteHypothesis>& set,
                                                 const std::string& miss) const {
   std::vector<Hypothesis> out;
   for (auto it = set.rbegin(); it != set.rend(); ++it) {
-    out.push_back({sentence(*it), allows(*it), miss});
+    out.push_back({sentence(*it), allows(mote, *it), miss});
   }
   return out;
 }
@@ -554,13 +555,13 @@ std::string MoteJoins::sentence(const MoteHypothesis& h) const {
   return {};
 }
 
-std::string MoteJoins::allows(const MoteHypothesis& h) const {
+std::string MoteJoins::allows(std::uint16_t mote, const MoteHypothesis& h) const {
   if (h.unknown) return "Anything that a mote may send.";
   switch (h.join.phase) {
     case Phase::kOutside: return "A join_request.";
     case Phase::kJoining:
-      return h.join.requests < context_.profile().join_requests_max
-                 ? "A join_request, " + ms_text(context_.join_period_us()) + " after the last."
+      return h.join.requests < context_.profile(mote).join_requests_max
+                 ? "A join_request, " + ms_text(context_.join_period_us(mote)) + " after the last."
                  : "Nothing but FAIL to its application.";
     case Phase::kMember:
       return "ack_join to <" + number(h.join.address.pid) + ", " + number(h.join.sink_devid) +

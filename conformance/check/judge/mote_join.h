@@ -111,7 +111,7 @@ class MoteJoins {
   /// Returns whether the mote was offered what its request had not asked for.
   bool stray_offer(std::uint16_t mote) const { return motes_[mote].wrong_reply.has_value(); }
   /// Returns at which expiry of its timer a call may fail first (decision 101).
-  std::uint8_t expiries_min() const;
+  std::uint8_t expiries_min(std::uint16_t mote) const;
   /// Notes a call of joinIsland that begins now.
   void called(std::uint16_t mote, std::int64_t now_us) { motes_[mote].called_us = now_us; }
   /// Returns when the timer of a call may have begun to run: with its first request, or with the
@@ -120,7 +120,7 @@ class MoteJoins {
   /// Returns whether such a call may have failed by now.
   bool may_have_failed(std::uint16_t mote, const MoteHypothesis& h, std::int64_t now_us) const;
   /// Returns the hypotheses for a finding, the furthest first, each with what it misses.
-  std::vector<Hypothesis> explanations(const std::vector<MoteHypothesis>& set,
+  std::vector<Hypothesis> explanations(std::uint16_t mote, const std::vector<MoteHypothesis>& set,
                                        const std::string& miss) const;
 
   /// Returns whether every hypothesis has it outside: what it hears is not for it (J11-HEAR).
@@ -140,10 +140,11 @@ class MoteJoins {
   void refuse_request(std::uint16_t mote, const Observation& seen, const Request& request,
                       bool as_member);
   std::uint16_t sink_of(std::uint16_t island) const;
-  ReqId why_not_ack(const MoteHypothesis& h, const Observation& seen, const AckJoin& ack) const;
+  ReqId why_not_ack(std::uint16_t mote, const MoteHypothesis& h, const Observation& seen,
+                    const AckJoin& ack) const;
   void refuse_ack(std::uint16_t mote, const Observation& seen, const AckJoin& ack);
   std::string sentence(const MoteHypothesis& h) const;
-  std::string allows(const MoteHypothesis& h) const;
+  std::string allows(std::uint16_t mote, const MoteHypothesis& h) const;
   void keep(MoteWatch& watch, std::vector<MoteHypothesis>& next, std::uint16_t mote,
             const Observation& seen);
 

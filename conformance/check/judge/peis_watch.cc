@@ -202,7 +202,7 @@ void PeisWatch::overdue(std::uint16_t base, Messages& messages, bool up, std::in
                     {"The base station got " + name_of(message.net) + " from " +
                          (up ? "its sink and did not put it on PEIS."
                              : "PEIS and did not hand it to its sink."),
-                     "That message, unchanged, within " + ms_text(context_.response_us()) + ".",
+                     "That message, unchanged, within " + ms_text(context_.response_us(base)) + ".",
                      {}});
   }
 }
@@ -244,11 +244,12 @@ void PeisWatch::overdue_island(std::uint16_t base, std::int64_t now_us) {
   if (asked.empty() || !context_.run.has_time) return;
   const Asked& first = asked.front();
   if (now_us <= context_.due_us(base, first.place.time_us, Link::kSerial)) return;
-  context_.report("N9-SET"_rule, Severity::kFail, first.place, base,
-                  {"The application sets island " + number(first.island) +
-                       ", and the sink is not told within " + ms_text(context_.response_us()) + ".",
-                   "A config message SET_ISLAND_ID to the sink.",
-                   {}});
+  context_.report(
+      "N9-SET"_rule, Severity::kFail, first.place, base,
+      {"The application sets island " + number(first.island) +
+           ", and the sink is not told within " + ms_text(context_.response_us(base)) + ".",
+       "A config message SET_ISLAND_ID to the sink.",
+       {}});
   asked.erase(asked.begin());
 }
 

@@ -147,7 +147,7 @@ void Originals::told(std::uint16_t node, const Observation& seen,
   std::size_t which = 0;  // The oldest that still waits: results come in the order of the calls.
   for (std::size_t i = 0; i < calls.size(); ++i) {
     const Call& one = calls.newest(i);
-    const bool waits = seen.place.time_us - one.place.time_us <= context_.response_us();
+    const bool waits = seen.place.time_us - one.place.time_us <= context_.response_us(node);
     if (!one.result && waits) which = i;
   }
   Call& call = calls.newest(which);
@@ -215,7 +215,7 @@ void Originals::judge_refused(std::uint16_t node, const Observation& seen, const
   const bool nobody = machine::is_reserved(devid) && devid != machine::kNullDevid;
   const bool all = devid == machine::kBroadcastDevid;
   const bool refusable = send.data.size() > machine::kAppDataMax || (all ? send.reliable : nobody);
-  if (!context_.run.all_stated || call.free || refusable) return;
+  if (!context_.device(node).whole || call.free || refusable) return;
   if (call.full) return;
   bool awaits = false;
   for (std::size_t i = 0; i < sent_[node].size(); ++i) {
@@ -256,7 +256,7 @@ void Originals::judge_order(std::uint16_t node, const Observation& seen, const C
 bool Originals::waits(std::uint16_t node, std::int64_t since_us, std::int64_t now_us) {
   const auto& sent = sent_[node];
   return context_.crowded(node, since_us) ||
-         (sent.size() > 0 && now_us - sent.newest(0).place.time_us <= context_.response_us());
+         (sent.size() > 0 && now_us - sent.newest(0).place.time_us <= context_.response_us(node));
 }
 
 // Says that by a whole log a message left later than an answer may, with nothing else to wait for.
@@ -270,7 +270,7 @@ void Originals::judge_late(std::uint16_t node, const Observation& seen, const Ca
       "N2-ONCE"_rule, may_wait ? Severity::kInconclusive : Severity::kFail, seen.place, node,
       {"The message that send accepted leaves " + ms_text(seen.place.time_us - called_us) +
            " after " + (called_us == call.place.time_us ? "the call." : "its interface is on."),
-       "Within " + ms_text(context_.response_us()) + ".",
+       "Within " + ms_text(context_.response_us(node)) + ".",
        {}});
 }
 
@@ -522,7 +522,7 @@ void Originals::judge_number(std::uint16_t node, const Observation& seen, const 
     const bool awaits =
         before.net.reliable == 1 && !before.acked && before.net.sound &&
         before.net.trans_id == component::kConnless && seen.place.timed() && before.place.timed() &&
-        now - before.place.time_us < context_.ack_timeout_us() - context_.early_us();
+        now - before.place.time_us < context_.ack_timeout_us(node) - context_.early_us(node);
     const bool same =
         asked != Asked::kYes && same_message(before.net, net) && same_payload(before.net, net);
     if (awaits) {

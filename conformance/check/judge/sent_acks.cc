@@ -81,7 +81,8 @@ void Originals::told(std::uint16_t node, const Observation& seen, const machine:
     // many sent at once the first are forgotten here before their timeout.
     const Device& device = context_.device(node);
     const bool elsewhere = device.role == Role::kBaseStation && !logs_peis(context_.run, node);
-    const std::int64_t patience_us = kTimeouts * context_.ack_timeout_us() + context_.response_us();
+    const std::int64_t patience_us =
+        kTimeouts * context_.ack_timeout_us(node) + context_.response_us(node);
     const bool forgotten =
         ring.full() && now - ring.newest(ring.size() - 1).place.time_us <= patience_us;
     const bool came = heard_ack(node, ack.seq_num, [](const Net&) { return true; });
@@ -111,7 +112,7 @@ void Originals::told(std::uint16_t node, const Observation& seen, const machine:
   // An implementation may start its timer at either.
   const std::int64_t waited = now - match->called_us;
   const std::int64_t latest =
-      context_.due_us(node, match->place.time_us + context_.ack_timeout_us());
+      context_.due_us(node, match->place.time_us + context_.ack_timeout_us(node));
   const bool overdue = match->given_us >= 0 && now > context_.due_us(node, match->given_us);
   // An ack on the air is none to a node whose whole log does not give it that.
   const bool acked = match->acked && (match->ack_came || !context_.device(node).whole);
@@ -145,20 +146,21 @@ void Originals::told(std::uint16_t node, const Observation& seen, const machine:
                     seen.place, node,
                     {what + ", but no ack of it was heard.", "No receive_ack before the ack.", {}});
   } else if (!ack.success && seen.place.timed() && match->place.timed() &&
-             waited < context_.ack_timeout_us() - context_.early_us()) {
+             waited < context_.ack_timeout_us(node) - context_.early_us(node)) {
     // Only a stated timeout can be broken (decision 110).
-    const bool stated = context_.ack_timeout_stated();
+    const bool stated = context_.ack_timeout_stated(node);
     context_.report("T3-TIMEOUT"_rule, stated ? Severity::kFail : Severity::kInconclusive,
                     seen.place, node,
                     {what + " " + ms_text(waited) + " after the message.",
-                     "Not before the timeout, " + ms_text(context_.ack_timeout_us()) + ".",
+                     "Not before the timeout, " + ms_text(context_.ack_timeout_us(node)) + ".",
                      {}});
   } else if (too_late) {
     context_.report(
         "T3-TIMEOUT"_rule,
-        context_.ack_timeout_stated() ? Severity::kFail : Severity::kInconclusive, seen.place, node,
+        context_.ack_timeout_stated(node) ? Severity::kFail : Severity::kInconclusive, seen.place,
+        node,
         {what + " " + ms_text(waited) + " after the message.",
-         "receive_ack(failure) at the timeout, " + ms_text(context_.ack_timeout_us()) + ".",
+         "receive_ack(failure) at the timeout, " + ms_text(context_.ack_timeout_us(node)) + ".",
          {}});
   } else {
     context_.findings.kept(ack.success ? "T3-SUCCESS"_rule : "T3-TIMEOUT"_rule);
@@ -172,7 +174,7 @@ void Originals::close(std::uint16_t node, std::size_t newest, std::int64_t now_u
   if (sent.reused) return;
   const bool awaits =
       sent.net.reliable == 1 && sent.net.sound && sent.net.trans_id == component::kConnless;
-  if (!awaits || context_.profile().ack_timeout_ticks == 0) return;
+  if (!awaits || context_.profile(node).ack_timeout_ticks == 0) return;
   for (std::size_t i = 0; i < newest; ++i) {  // Sent again by its application: one event for both.
     if (ring.newest(i).net.seq_num == sent.net.seq_num) return;
   }
@@ -187,17 +189,18 @@ void Originals::close(std::uint16_t node, std::size_t newest, std::int64_t now_u
   }
   // An unstated timeout may be longer than what is assumed (decision 110); for ever it is not.
   const std::int64_t waited = now_us - sent.place.time_us;
-  const std::int64_t timeouts = context_.run.all_stated ? 1 : kTimeouts;
-  const std::int64_t timeout_us = timeouts * context_.ack_timeout_us();
+  const std::int64_t timeouts = context_.device(node).whole ? 1 : kTimeouts;
+  const std::int64_t timeout_us = timeouts * context_.ack_timeout_us(node);
   if (now_us <= context_.due_us(node, sent.place.time_us + timeout_us)) return;
-  context_.report("T3-ONCE"_rule,
-                  context_.ack_timeout_stated() || waited > kForever * context_.ack_timeout_us()
-                      ? Severity::kFail
-                      : Severity::kInconclusive,
-                  sent.place, node,
-                  {"No receive_ack for " + name_of(sent.net) + " in " + ms_text(waited) + ".",
-                   "receive_ack(failure) at the timeout, or receive_ack(success) before.",
-                   {}});
+  context_.report(
+      "T3-ONCE"_rule,
+      context_.ack_timeout_stated(node) || waited > kForever * context_.ack_timeout_us(node)
+          ? Severity::kFail
+          : Severity::kInconclusive,
+      sent.place, node,
+      {"No receive_ack for " + name_of(sent.net) + " in " + ms_text(waited) + ".",
+       "receive_ack(failure) at the timeout, or receive_ack(success) before.",
+       {}});
 }
 
 }  // namespace rubric::check

@@ -207,9 +207,9 @@ void SinkJoins::forgot(std::uint16_t sink, std::uint16_t mote_am) {
   keep(*watch, mote, next_, mote.ack);
 }
 
-void SinkJoins::doubt(const Device& sink, PairWatch& watch, const Place& now) const {
-  const std::uint32_t gone_after = context_.profile().gone_after_ticks;
-  if (gone_after == 0 || sink.application) return;
+void SinkJoins::doubt(std::uint16_t sink, PairWatch& watch, const Place& now) const {
+  const std::uint32_t gone_after = context_.profile(sink).gone_after_ticks;
+  if (gone_after == 0 || context_.device(sink).application) return;
   if (now.time_us - watch.ack.time_us < machine::us_of(gone_after)) return;
   SinkHypothesis unknown;
   unknown.unknown = true;
@@ -229,8 +229,9 @@ void SinkJoins::request(std::uint16_t mote_device, const Observation& seen, cons
     const bool sure = surely_received_by == sink.device;
     if (!hears(device, seen, sure)) continue;
     PairWatch& watch = pair(sink, am);
-    doubt(device, watch, seen.place);
-    const bool full = listed(sink) >= context_.profile().members_max;  // Then it may be silent.
+    doubt(sink.device, watch, seen.place);
+    // With a full list it may be silent.
+    const bool full = listed(sink) >= context_.profile(sink.device).members_max;
     watch.request_listed = sure && std::all_of(watch.set.begin(), watch.set.end(),
                                                [](const auto& h) { return h.member.has_value(); });
     next_.clear();
@@ -239,7 +240,7 @@ void SinkJoins::request(std::uint16_t mote_device, const Observation& seen, cons
       JoinSink list = list_of(heard);
       context_.actions.clear();
       const bool answers = machine::hear_request(
-          list, context_.join_context(device.am, sink.island, seen.place.time_us), am,
+          list, context_.join_context(sink.device, sink.island, seen.place.time_us), am,
           request.seq_num, request.descriptor, context_.actions);
       take_list(list, heard);
       if (!sure || h.unknown || full) next_.push_back(h);
@@ -274,9 +275,9 @@ void SinkJoins::close_unanswered(std::uint16_t mote_am, Unanswered& unanswered) 
   // If all sinks have logs, these show who received it.
   const auto hearing = [&](const SinkWatch& sink) { return context_.device(sink.device).hearing; };
   if (!sinks_.empty() && std::all_of(sinks_.begin(), sinks_.end(), hearing)) return;
-  for (SinkWatch& sink : sinks_) {  // A sink that lists it is right not to answer.
+  for (SinkWatch& sink : sinks_) {  // A sink that lists it, or is full, is right not to answer.
     const PairWatch& watch = pair(sink, mote_am);
-    if (listed(sink) >= context_.profile().members_max) return;  // So is one that is full.
+    if (listed(sink) >= context_.profile(sink.device).members_max) return;
     const auto may_list = [](const SinkHypothesis& h) { return h.member.has_value(); };
     if (std::any_of(watch.set.begin(), watch.set.end(), may_list)) return;
   }
@@ -392,7 +393,7 @@ void SinkJoins::reply(std::uint16_t sink_device, const Observation& seen, const 
     const std::size_t members = listed(*sink);
     const bool new_mote =
         std::none_of(next_.begin(), next_.end(), [](const SinkHypothesis& h) { return h.member; });
-    if (new_mote && members >= context_.profile().members_max) {
+    if (new_mote && members >= context_.profile(sink_device).members_max) {
       context_.report("J3-FULL"_rule, Severity::kWeak, seen.place, sink_device,
                       {"join_reply to a new mote while " + number(members) + " are members.",
                        "No reply when the list is full.",
@@ -410,8 +411,9 @@ void SinkJoins::refuse_reply(SinkWatch& sink, PairWatch& watch, const Observatio
   const std::uint16_t am = seen.frame.dest;
   const std::int64_t now = seen.place.time_us;
   const SinkHypothesis& h = watch.set.back();
-  // The request that it answers may lie before the capture.
-  const std::int64_t before_us = watch.request.time_us - context_.join_period_us();
+  // The request that it answers may lie before the capture, by the timer of the mote.
+  const std::int64_t before_us =
+      watch.request.time_us - context_.join_period_us(context_.slowest_mote(am));
   const bool covered = watch.asked && before_us >= context_.run.start_us;
   const std::int64_t since = covered ? watch.request.time_us : context_.run.start_us - 1;
   Said said;
@@ -474,7 +476,7 @@ void SinkJoins::ack_join(std::uint16_t, const Observation& seen, const AckJoin& 
     PairWatch& watch = pair(sink, ack.src.devid);
     next_.clear();
     // With a list that may be full of others it may ignore the mote, and owe nothing.
-    const bool full = others(sink, watch) >= context_.profile().members_max;
+    const bool full = others(sink, watch) >= context_.profile(sink.device).members_max;
     bool admitted = false;
     bool all_admit = true;
     ReqId ignored = ReqId::kNone;
@@ -491,9 +493,10 @@ void SinkJoins::ack_join(std::uint16_t, const Observation& seen, const AckJoin& 
       const bool stranger = ack.dest.devid != device.am || ack.src.devid != seen.frame.src ||
                             ack.src.pid != ack.dest.pid;
       const bool admits =
-          !stranger && machine::hear_ack_join(
-                           list, context_.join_context(device.am, sink.island, seen.place.time_us),
-                           ack.dest, ack.src, ack.seq_num, ack.descriptor, context_.actions);
+          !stranger &&
+          machine::hear_ack_join(
+              list, context_.join_context(sink.device, sink.island, seen.place.time_us), ack.dest,
+              ack.src, ack.seq_num, ack.descriptor, context_.actions);
       take_list(list, heard);
       if (stranger) ignored = "J6-SENDER"_rule;
       if (!admits && !context_.actions.all().empty()) {

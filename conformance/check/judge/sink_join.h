@@ -185,7 +185,7 @@ class SinkJoins {
   static constexpr std::size_t kSetMax = 256;
 
   /// Adds that the sink may have forgotten the mote, if so much silence was possible.
-  void doubt(const Device& sink, PairWatch& watch, const Place& now) const;
+  void doubt(std::uint16_t sink, PairWatch& watch, const Place& now) const;
   void may_forget(SinkWatch& sink, PairWatch& pair, const Place& at);
   static std::size_t others(const SinkWatch& sink, const PairWatch& pair);
   static bool owes(SinkWatch& sink, std::uint16_t mote_am, std::uint16_t seq_num);

@@ -221,10 +221,10 @@ bool SynapticWatch::flooded(std::uint16_t device, const Unknown& one) const {
   const bool serial = one.link == machine::Link::kSerial;
   const std::size_t room = serial ? machine::kSerialRoom : machine::kRadioRoom;
   return std::ranges::any_of(context_.busy_times(device), [&](const BusyTime& busy) {
-    if (busy.from_us > came_us || came_us > busy.to_us + context_.response_us()) return false;
+    if (busy.from_us > came_us || came_us > busy.to_us + context_.response_us(device)) return false;
     std::size_t others = 0;
     const auto first =
-        std::ranges::lower_bound(seen, busy.from_us - context_.response_us(), {},
+        std::ranges::lower_bound(seen, busy.from_us - context_.response_us(device), {},
                                  [](const Observation& other) { return other.place.time_us; });
     for (auto i = static_cast<std::size_t>(first - seen.begin());
          i < seen.size() && seen[i].place.time_us <= came_us; ++i) {
@@ -245,7 +245,7 @@ void SynapticWatch::owed(std::uint16_t device, const Observation& seen, const Ne
   if (std::ranges::find(node.perhaps, id) != node.perhaps.end()) return;
   // What its application has just disposed may end at the next tick; a copy may be left out.
   const In* const in = find_in(node, id);
-  if (in != nullptr && seen.place.time_us - in->ended_us <= context_.early_us()) return;
+  if (in != nullptr && seen.place.time_us - in->ended_us <= context_.early_us(device)) return;
   const auto copy = [&](const Unknown& one) { return one.id == id && one.seq_num == net.seq_num; };
   if (std::ranges::any_of(node.unknowns, copy)) return;
   node.unknowns.push_back({id, seen.place, net.seq_num, seen.frame.link});
@@ -293,7 +293,7 @@ void SynapticWatch::told(std::uint16_t device, const Observation& seen,
     return;
   }
   if (in->ended_us >= 0) {
-    if (now - in->ended_us <= context_.early_us()) return;  // It was on its way.
+    if (now - in->ended_us <= context_.early_us(device)) return;  // It was on its way.
     context_.report("S6-STOPPED"_rule, Severity::kFail, seen.place, device,
                     {"synData_received of a channel " + ms_text(now - in->ended_us) +
                          " after it was stopped or disposed, or created and not started.",
@@ -302,12 +302,12 @@ void SynapticWatch::told(std::uint16_t device, const Observation& seen,
     return;
   }
   settle(device, now);
-  const std::int64_t response = context_.response_us();
+  const std::int64_t response = context_.response_us(device);
   const bool fresh = data.status == machine::DataStatus::kNew;
   const bool knows = context_.device(device).hearing && !in->local;
   const std::int64_t since = std::max(in->told_us, in->begun_us);
   // Data that came close to a tick may count for this one or the next; a whole log has the order.
-  const std::int64_t apart = context_.device(device).whole ? 1 : context_.early_us();
+  const std::int64_t apart = context_.device(device).whole ? 1 : context_.early_us(device);
   // Returns the first of the data that came between two times, and takes them for told if they are.
   const auto came = [&](std::int64_t from, std::int64_t to) {
     std::int64_t* first = nullptr;
@@ -320,7 +320,7 @@ void SynapticWatch::told(std::uint16_t device, const Observation& seen,
     if (first != nullptr && fresh) *first = -1;
     return first != nullptr;
   };
-  if (fresh && in->local && news_of_nothing(node, *in)) {
+  if (fresh && in->local && news_of_nothing(device, *in)) {
     context_.report("S3-OLD"_rule, Severity::kFail, seen.place, device,
                     {"synData_received of a power-save channel from the node to itself has status "
                      "new, though nothing was written since the last.",
@@ -353,7 +353,7 @@ void SynapticWatch::told(std::uint16_t device, const Observation& seen,
   // the one before (decision 24).
   const std::int64_t late = context_.device(device).whole ? context_.run.slack_us : response;
   const std::int64_t least =
-      machine::us_of(node.channels.period_ticks) - late - context_.early_us();
+      machine::us_of(node.channels.period_ticks) - late - context_.early_us(device);
   const bool steady = in->told_us >= in->begun_us && node.step_us < in->told_us;
   if (in->told_us >= 0 && steady && now - in->told_us < least) {
     context_.report(

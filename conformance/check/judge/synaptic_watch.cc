@@ -38,7 +38,7 @@ void SynapticWatch::begin_life(std::uint16_t device) {
 
 void SynapticWatch::begin(std::uint16_t device) {
   nodes_[device].logged = true;
-  nodes_[device].channels.period_ticks = context_.profile().synaptic_period_ticks;
+  nodes_[device].channels.period_ticks = context_.profile(device).synaptic_period_ticks;
 }
 
 // Returns whether a channel is from the node to itself; one of a namesake in another island is not.
@@ -60,13 +60,13 @@ void SynapticWatch::called(std::uint16_t device, const Observation& seen, machin
   const std::int64_t now_us = seen.place.time_us;
   // Only a log that has all of a node surely has each result.
   std::erase_if(node.wanted, [&](const Wanted& one) {
-    return !context_.device(device).whole || now_us - one.called_us > context_.response_us();
+    return !context_.device(device).whole || now_us - one.called_us > context_.response_us(device);
   });
   const bool creates = std::holds_alternative<machine::CreateChannel>(*seen.call);
   // The clock may be set before there is a channel.
   const bool steps = std::holds_alternative<machine::SetTimeStep>(*seen.call);
   if (node.channels.period_ticks == 0) {
-    node.channels.period_ticks = context_.profile().synaptic_period_ticks;
+    node.channels.period_ticks = context_.profile(device).synaptic_period_ticks;
   }
   node.logged = node.logged || creates;
   if (!node.logged && !steps) return;
@@ -78,10 +78,7 @@ void SynapticWatch::called(std::uint16_t device, const Observation& seen, machin
   machine::Config config;
   config.role = context_.device(device).role;
   config.id = context_.device(device).am;
-  config.profile = context_.profile();
-  if (device < context_.run.nodes.size() && context_.run.nodes[device].channels != 0) {
-    config.profile.channels_max = context_.run.nodes[device].channels;
-  }
+  config.profile = context_.profile(device);
   settle(device, now_us);
   node.former = {node.channels, node.ins, node.outs, node.restart_us, node.shifted};
   const machine::Synaptic& before = node.former.channels;
@@ -239,10 +236,10 @@ void SynapticWatch::sent(std::uint16_t device, const Observation& seen, const Ne
     as_written = as_written && (same || before || (out->written >> i & 1) == 0);
     out->sent_bits[i] = bits;
   }
-  if (current || out->wrote_us < now - context_.response_us()) out->wrote_us = -1;
+  if (current || out->wrote_us < now - context_.response_us(device)) out->wrote_us = -1;
   // Data in the outgoing buffer may still leave.
   if (twin && out->silent_us >= 0) return;
-  if (out->silent_us >= 0 && now - out->silent_us > context_.response_us()) {
+  if (out->silent_us >= 0 && now - out->silent_us > context_.response_us(device)) {
     context_.report(out->disposed ? "S6-DISPOSED"_rule : "S6-STOPPED"_rule, Severity::kFail,
                     seen.place, device,
                     {"Data of the channel to " + text_of(net.dest) + ", " +
@@ -274,17 +271,18 @@ void SynapticWatch::sent(std::uint16_t device, const Observation& seen, const Ne
                      "The value of each connection, in order.",
                      {}});
   }
-  const std::int64_t least = machine::us_of(node.channels.period_ticks) - context_.early_us();
+  const std::int64_t least = machine::us_of(node.channels.period_ticks) - context_.early_us(device);
   // The data of one tick leave one after the other, and the tick was before the first.
-  const std::int64_t gap_us = kOnAirUs + context_.early_us();
+  const std::int64_t gap_us = kOnAirUs + context_.early_us(device);
   if (node.data_us < 0 || now - node.data_us > gap_us) node.tick_us = now;
   node.data_us = now;
   const std::int64_t last_tick_us = std::exchange(out->tick_us, node.tick_us);
   // What had to wait for the channel is nearer to the next.
   const std::int64_t on_us = out->line == machine::Link::kSerial ? node.serial_on_us : node.on_us;
-  const bool steady = out->sent_us >= 0 && node.step_us < out->sent_us &&
-                      (on_us == 0 || on_us < out->sent_us - context_.response_us()) &&
-                      !context_.busy(device, out->sent_us - context_.response_us(), out->sent_us);
+  const bool steady =
+      out->sent_us >= 0 && node.step_us < out->sent_us &&
+      (on_us == 0 || on_us < out->sent_us - context_.response_us(device)) &&
+      !context_.busy(device, out->sent_us - context_.response_us(device), out->sent_us);
   if (steady && now - last_tick_us < least) {
     context_.report(
         "S2-TICK"_rule, Severity::kFail, seen.place, device,
@@ -295,12 +293,12 @@ void SynapticWatch::sent(std::uint16_t device, const Observation& seen, const Ne
     context_.findings.kept("S2-TICK"_rule);
   }
   // The first tick is not long after the start, another a period after data that did not wait.
-  const std::int64_t off_us = context_.response_us() + context_.early_us();
+  const std::int64_t off_us = context_.response_us(device) + context_.early_us(device);
   const std::int64_t next_us = out->sent_us + machine::us_of(node.channels.period_ticks);
   if (out->sent_us < out->begun_us) {
     const std::int64_t begun_us = std::max(out->begun_us, node.step_us);
     context_.left(device, out->line, seen.place, begun_us,
-                  begun_us + patience_us(device, true, begun_us) - context_.response_us(),
+                  begun_us + patience_us(device, true, begun_us) - context_.response_us(device),
                   "the data to " + text_of(net.dest));
   } else if (steady) {
     context_.left(device, out->line, seen.place, next_us - off_us, next_us + off_us,
@@ -308,7 +306,7 @@ void SynapticWatch::sent(std::uint16_t device, const Observation& seen, const Ne
   }
   const bool saves = channel->mode == machine::Mode::kPowerSave;
   // A write just before the last data may have missed its tick, unless they have it.
-  const std::int64_t missed_us = out->newest ? 0 : context_.response_us();
+  const std::int64_t missed_us = out->newest ? 0 : context_.response_us(device);
   const bool changed = out->written_us >= out->sent_us - missed_us;
   if (saves && steady && !twin && !changed) {
     context_.report("S3-UNCHANGED"_rule, Severity::kFail, seen.place, device,
@@ -376,17 +374,18 @@ std::int64_t SynapticWatch::able_since(std::uint16_t device, std::int64_t now_us
 // node's clock may be shifted, and a new period may begin with the tick after it was set.
 std::int64_t SynapticWatch::patience_us(std::uint16_t device, bool first,
                                         std::int64_t last_us) const {
-  const std::uint32_t shift = context_.profile().synaptic_phase_ticks *
+  const std::uint32_t shift = context_.profile(device).synaptic_phase_ticks *
                               static_cast<std::uint32_t>(context_.device(device).am);
   const Node& node = nodes_[device];
   std::uint32_t period = node.channels.period_ticks;
   if (last_us <= node.step_us) period = std::max(period, node.former_ticks);
-  return machine::us_of(period + (first ? shift : 0)) + context_.response_us() +
-         context_.early_us();
+  return machine::us_of(period + (first ? shift : 0)) + context_.response_us(device) +
+         context_.early_us(device);
 }
 
 // Returns whether the node's own output has nothing new for this input since its last signal.
-bool SynapticWatch::news_of_nothing(Node& node, const In& in) {
+bool SynapticWatch::news_of_nothing(std::uint16_t device, const In& in) {
+  Node& node = nodes_[device];
   const Out* const out = find(node, in.id);
   const machine::Channel* const channel = check::find(node.channels, in.id);
   if (out == nullptr || channel == nullptr || channel->mode != machine::Mode::kPowerSave) {
@@ -394,7 +393,7 @@ bool SynapticWatch::news_of_nothing(Node& node, const In& in) {
   }
   const std::int64_t period_us = machine::us_of(node.channels.period_ticks);
   return in.told_us - period_us > std::max(in.begun_us, out->begun_us) &&
-         in.told_us - context_.response_us() > out->written_us;
+         in.told_us - context_.response_us(device) > out->written_us;
 }
 
 // Returns whether the node's own output has news for this input at each tick.
@@ -414,7 +413,7 @@ void SynapticWatch::judge_grid(std::uint16_t device, const Observation& seen, co
   if (node.restart_us < 0 || node.shifted || ticks.count < at.size() || period == 0) return;
   if (at[1] > node.restart_us || at[2] <= node.restart_us || node.step_us > at[0]) return;
   // Two ticks before and two after, each a period apart: two grids.
-  const std::int64_t off = context_.early_us();
+  const std::int64_t off = context_.early_us(device);
   const auto steady = [&](std::int64_t from, std::int64_t to) {
     return std::abs(to - from - period) <= off / 2;
   };

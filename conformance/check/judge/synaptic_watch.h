@@ -154,7 +154,7 @@ class SynapticWatch {
   void note_inputs(Node& node, const machine::Synaptic& before, std::int64_t now_us);
   void begin(std::uint16_t device);
   static bool is_local(const Node& node, const machine::Channel& channel);
-  bool news_of_nothing(Node& node, const In& in);
+  bool news_of_nothing(std::uint16_t device, const In& in);
   bool always_news(Node& node, const In& in);
   std::int64_t able_since(std::uint16_t device, std::int64_t now_us,
                           std::optional<machine::Link> line, bool local = false) const;

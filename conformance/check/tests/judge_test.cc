@@ -475,7 +475,7 @@ TEST(Judge, SaysWhoIsNotFollowed) {
 // A run may have more lesser findings than are listed; its failures are listed all the same.
 TEST(Judge, LesserFindingsKeepNoFailureOut) {
   const std::vector<ClockStep> steady;
-  Findings findings(false, steady, {});
+  Findings findings(false, steady);
   Finding finding;
   finding.requirement = "J1-DEST"_rule;
   finding.severity = Severity::kWeak;

@@ -2,8 +2,14 @@
 // 125).
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <iterator>
+#include <string>
+
 #include "conformance/check/observation.h"
+#include "conformance/check/tests/failures.h"
 #include "conformance/check/tests/testing.h"
+#include "conformance/check/tests/testing_log.h"
 
 namespace rubric::check {
 namespace {
@@ -77,13 +83,15 @@ TEST(Stated, AnAckThatComesLateIsNotMissing) {
   EXPECT_EQ(failures_of(unacked(320, options, true), "T2-ACK"_rule), 0U);
 }
 
-// Judges a log in which a node is notified of a timeout `after_ms` after its message.
-Report told_early(double after_ms, const Options& options) {
+// Judges a log in which a node that states `own` is notified of a timeout `after_ms` after its
+// message.
+Report told_early(double after_ms, const Options& options, const trace::Statement& own = {}) {
   Script script;
   LoggedNode node;
   node.name = "m2";
   node.id = 2;
   node.application = true;
+  node.stated = own;
   script.run.nodes = {node};
   NetFields net;
   net.dest = {11, 3};
@@ -118,6 +126,106 @@ TEST(Stated, ATimeoutThatIsTheAssumedOneIsStatedAllTheSame) {
   EXPECT_EQ(severity(told_early(1000 * kTickMs + 1, options)), Severity::kNote);
   options.ack_timeout_us = 976'563;
   EXPECT_EQ(severity(told_early(500, options)), Severity::kFail);
+}
+
+TEST(Stated, WhatTheUserSaysOfAllComesBeforeWhatANodeStates) {
+  const auto timeout = [](const Report& report) -> std::string {
+    for (const Finding& finding : report.findings) {
+      if (finding.requirement == "T3-TIMEOUT"_rule) return finding.expected;
+    }
+    return "";
+  };
+  const trace::Statement own = {{trace::ParameterId::kAckTimeout, 2048}};
+  EXPECT_EQ(timeout(told_early(1500, {}, own)), "Not before the timeout, 2000.00 ms.");
+  EXPECT_EQ(timeout(told_early(2000, {}, own)), "");
+  Options users;
+  users.stated = {{trace::ParameterId::kAckTimeout, 1024}};
+  EXPECT_EQ(timeout(told_early(500, users, own)), "Not before the timeout, 1000.00 ms.");
+  users.ack_timeout_us = 3'000'000;
+  EXPECT_EQ(timeout(told_early(2500, users, own)), "Not before the timeout, 3000.00 ms.");
+  users = {};
+  users.stated = {{trace::ParameterId::kResponse, 100}};
+  EXPECT_EQ(timeout(told_early(1500, users, own)), "Not before the timeout, 2000.00 ms.");
+}
+
+// Returns who asks too early, by a log of two motes and the sink, beside the capture in which mote
+// 3 asks twice, 492 ms apart.
+std::string too_early(const std::string& m2, const std::string& m3, const Options& options = {}) {
+  const std::string name = "spec/captures/firmware/e1_simultaneous_join.pcapng";
+  std::ifstream file(name, std::ios::binary);
+  const std::string capture{std::istreambuf_iterator<char>(file), {}};
+  const std::string log = "%rtr 1 %profile deployed %tick us\n%node sA sink id=1 island=11\n" +
+                          (m2.empty() ? m2 : "%node m2 mote id=2 " + m2 + "\n") +
+                          (m3.empty() ? m3 : "%node m3 mote id=3 " + m3 + "\n") + "case e1\n" +
+                          at(516250, "sA > app mote_joined(11:2 1 67 1)") +
+                          at(1014373, "sA > app mote_joined(11:3 1 67 1)");
+  RunReader reader;
+  std::string error;
+  EXPECT_TRUE(reader.add_bytes(name, capture, error)) << error;
+  EXPECT_TRUE(reader.add_bytes("log", log, error)) << error;
+  std::string out;
+  for (const Finding& finding : judge(reader.finish(), options).findings) {
+    if (finding.requirement == "J8-PERIOD"_rule && finding.severity == Severity::kFail) {
+      out += finding.node;
+    }
+  }
+  return out;
+}
+
+TEST(Stated, ALogStatesNothingOfTheNodesOfACaptureBesideIt) {
+  EXPECT_EQ(too_early("", ""), "");
+  EXPECT_EQ(too_early("", "join_period=1024"), "mote 3");
+  EXPECT_EQ(too_early("join_period=1024", ""), "");
+  EXPECT_EQ(too_early("join_period=1024", "join_period=400"), "");
+  Options users;
+  users.stated = {{trace::ParameterId::kJoinPeriod, 1024}};
+  EXPECT_EQ(too_early("join_period=400", "", users), "mote 3");
+  EXPECT_EQ(too_early("", "join_period=400", users), "mote 3");
+}
+
+// A header that only names a node says nothing of it that another log says.
+TEST(Stated, ANodeIsThatOfTheLogThatHasLinesOfIt) {
+  const auto asks = [](int tick, const std::string& mote) {
+    return at(tick, "m" + mote + " > rA am=" + mote +
+                        "->1 join_request(seq_num=7 mote_type=1 transducers=1 actuators=1)");
+  };
+  const std::string one = "%rtr 1\n%node m5 mote id=5 iut\n%node m6 mote id=6\ncase one\n" +
+                          asks(0, "5") + asks(500, "5");
+  const std::string other =
+      "%rtr 1\n%node m5 mote id=5\n%node m6 mote id=6 join_period=1000 iut\ncase other\n" +
+      asks(100, "6") + asks(600, "6");
+  for (const bool turned : {false, true}) {
+    RunReader reader;
+    std::string error;
+    EXPECT_TRUE(reader.add_bytes("one", turned ? other : one, error)) << error;
+    EXPECT_TRUE(reader.add_bytes("two", turned ? one : other, error)) << error;
+    std::string out;
+    for (const Finding& finding : judge(reader.finish(), {}).findings) {
+      if (finding.severity == Severity::kFail) out += finding.node;
+    }
+    EXPECT_EQ(out, "mote 6") << turned;
+  }
+}
+
+// How long a sink may be late with a reply (decision 125) is up to the mote that waits for it.
+TEST(Stated, AReplyIsMissingOnceTheCallOfItsMoteIsOver) {
+  const auto late = [](const std::string& sink, const std::string& mote) {
+    const std::string net =
+        "net_msg(dest=11:7 src=11:null reliable=0 seq_num=60 "
+        "payload.trans_id=connless payload.app_id=mockup payload.payload=x01)";
+    return broken_in(judge_log(
+        "%rtr 1\n%node sA sink id=1 island=11 " + sink + "\n%node m5 mote id=5 " + mote +
+        "\n%node bA base_station island=11\ncase x\n" +
+        at(0, "sA < rA am=5->1 join_request(seq_num=300 mote_type=1 transducers=1 actuators=1)") +
+        at(4000, "sA < serA am=0->1 " + net) + at(4001, "sA > rA am=1->7 " + net) +
+        at(4300,
+           "sA > rA am=1->5 join_reply(island_addr=11 mote_addr=5 cur_time=4300 "
+           "seq_num=300)")));
+  };
+  EXPECT_EQ(late("", ""), "J3-REPLY");
+  EXPECT_EQ(late("", "join_period=1000"), "");
+  EXPECT_EQ(late("join_period=1000", ""), "J3-REPLY");
+  EXPECT_EQ(late("join_period=1000", "join_period=500"), "J3-REPLY");
 }
 
 }  // namespace
