@@ -13,7 +13,7 @@ import sys
 import unittest
 import xml.etree.ElementTree
 
-from testing import FIRMWARE, Folder, on_terminal, rubric
+from testing import FIRMWARE, Folder, on_terminal, rubric, some
 
 REGENERATE = "--regenerate" in sys.argv and (sys.argv.remove("--regenerate") or True)
 BASESTATION = pathlib.Path("spec/captures/basestation")
@@ -47,8 +47,8 @@ def failures(report):
 
 
 def capture_files():
-    return sorted(FIRMWARE.glob("*.pcapng")) + sorted(FIRMWARE.glob("*.serial.bin")) + \
-        sorted(BASESTATION.glob("*.sfstream"))
+    return some(sorted(FIRMWARE.glob("*.pcapng")) + sorted(FIRMWARE.glob("*.serial.bin")) +
+                sorted(BASESTATION.glob("*.sfstream")))
 
 
 class Text(Folder):
@@ -70,7 +70,7 @@ class Text(Folder):
                 if finding["frame"] is not None:
                     self.assertEqual(offsets[str(finding["frame"])], str(finding["offset"]), file)
                     seen += 1
-        self.assertGreater(seen, 20)
+        self.assertGreater(seen, 5)
 
     def test_again_shows_the_same_finding(self):
         """Runs every command below a failure, as it is printed."""

@@ -12,7 +12,7 @@ import struct
 import subprocess
 import unittest
 
-from testing import RUBRIC, Folder, ProgramTest, run
+from testing import RUBRIC, Folder, ProgramTest, run, some
 
 CAPTURES = pathlib.Path("spec/captures")
 SERIAL = CAPTURES / "firmware/a_join_data.serial.bin"
@@ -284,7 +284,8 @@ class Convert(Folder):
 
 class Stats(unittest.TestCase):
     def test_agrees_with_decode(self):
-        for file in [*CAPTURES.glob("firmware/*.pcapng"), *CAPTURES.glob("basestation/*.sfstream")]:
+        for file in some(sorted([*CAPTURES.glob("firmware/*.pcapng"),
+                                 *CAPTURES.glob("basestation/*.sfstream")])):
             frames = [json.loads(line)
                       for line in rubric("decode", "--format", "jsonl", file)[1].splitlines()]
             code, out, _ = rubric("stats", "--format", "json", file)
@@ -344,10 +345,11 @@ class Explain(ProgramTest):
                     for rule in re.split(r"[\s,]+", tag.strip()):
                         rules.add((rule, "!>" in line.split(), name))
         self.assertTrue(rules)
-        text = {}
+        text = {rule: rubric("explain", rule, "--cases")[1].decode().split("Cases:")[1]
+                for rule in some(sorted({rule for rule, _, _ in rules}))}
         for rule, negative, name in sorted(rules):
             if rule not in text:
-                text[rule] = rubric("explain", rule, "--cases")[1].decode().split("Cases:")[1]
+                continue
             positives, _, negatives = text[rule].partition("negative:")
             found = negatives if negative else positives
             self.assertIn(name, re.findall(r"(\S+) \(", " ".join(found.split())), rule)
