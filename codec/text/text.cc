@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstdio>
 #include <cstring>
+#include <system_error>
 
 namespace rubric::text {
 namespace {
@@ -194,7 +197,11 @@ std::string harmless(std::string_view text, Keep keep) {
 }
 
 void print_harmless(std::FILE* file, std::string_view text) {
-  fmt::print(file, "{}", harmless(text, Keep::kLines));
+  const std::string out = harmless(text, Keep::kLines);
+  const bool is_whole = std::fwrite(out.data(), 1, out.size(), file) == out.size();
+  // Words that nobody reads are no reason to end: a thread could not even say so.
+  if (is_whole || file == stderr) return;
+  throw std::system_error(errno, std::generic_category(), "cannot write");
 }
 
 }  // namespace rubric::text

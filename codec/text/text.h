@@ -66,7 +66,8 @@ enum class Keep : std::uint8_t { kNone, kLines };
 /// expectations, notes.
 std::string harmless(std::string_view text, Keep keep = Keep::kNone);
 
-/// Prints text for people to a file, harmless; see fmt::print().
+/// Prints text for people to a file, harmless; see fmt::print(). Throws std::system_error if that
+/// cannot be written; what stderr does not take is lost.
 void print_harmless(std::FILE* file, std::string_view text);
 template <class... Args>
 void print(std::FILE* file, fmt::format_string<Args...> format, Args&&... args) {

@@ -12,7 +12,6 @@
 #include "tools/cli/command.h"
 
 namespace rubric::cli {
-namespace {
 
 bool is_written(const std::string& name, int error) {
   if (error != 0 && error != EPIPE) {
@@ -21,8 +20,6 @@ bool is_written(const std::string& name, int error) {
   }
   return error == 0;
 }
-
-}  // namespace
 
 Output::Output(const std::string& path, Mode mode)
     : file_(std::make_unique<text::OutFile>(path, mode)),

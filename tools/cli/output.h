@@ -51,6 +51,10 @@ class Output {
   format::Buffer buffer_;
 };
 
+/// Returns whether the error, as in errno, of writing to the file, or to stdout for "-", is 0; else
+/// prints it on stderr, except that a closed pipe is no news.
+bool is_written(const std::string& name, int error);
+
 /// Writes all of `text` to the file, or to stdout for "-". Returns false if that fails, having
 /// printed why on stderr, except that a closed pipe is no news.
 bool write_file(const std::string& path, std::string_view text);

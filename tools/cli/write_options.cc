@@ -1,23 +1,24 @@
 #include "tools/cli/write_options.h"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstring>
 #include <filesystem>
 
 #include "codec/text/packed.h"
-#include "codec/text/text.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/output.h"
 #include "tools/cli/quantity.h"
 
 namespace rubric::cli {
 void add_write_options(Command& command, WriteOptions& options, const std::string& description,
-                       bool rotates) {
+                       bool rotates, bool with_log) {
   const Option write = command.add_option("--write", options.path, description).check(given);
-  command.add_flag("--force", options.force, "Let a --write that grows replace an old file")
-      .needs(write);
+  Option force = command.add_flag(
+      "--force", options.force,
+      fmt::format("Let a --write {}that grows replace an old file", with_log ? "or --log " : ""));
+  if (!with_log) force.needs(write);
   if (!rotates) return;
   const auto check = [](const std::string& text) {
     return parse_quantity(text) ? "" : "expected a size or time as in 100M or 24h, given " + text;
@@ -34,6 +35,19 @@ lines::Rotation rotation_of(const WriteOptions& options) {
   return {after.bytes, std::chrono::seconds(after.seconds)};
 }
 
+void check_place(const std::string& option, const std::string& path, bool replaces) {
+  std::error_code none;
+  const std::filesystem::path file(path);
+  if (!replaces && std::filesystem::is_regular_file(file, none)) {
+    throw UsageError(option, path + " exists; --force replaces it");
+  }
+  const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
+  if (!std::filesystem::exists(file, none) && ::access(folder.c_str(), W_OK | X_OK) != 0) {
+    is_written(path, errno);
+    exit_with(kExitOutput);
+  }
+}
+
 void check_write(const WriteOptions& options, const std::vector<std::string>& inputs, bool grows) {
   if (options.path.empty()) return;
   keep_apart("--write", options.path, inputs);
@@ -42,16 +56,7 @@ void check_write(const WriteOptions& options, const std::vector<std::string>& in
                                     ": captures that grow are not compressed; 'rubric "
                                     "convert' does it afterwards");
   }
-  std::error_code none;
-  const std::filesystem::path path(options.path);
-  if (grows && !options.force && std::filesystem::is_regular_file(path, none)) {
-    throw UsageError("--write", options.path + " exists; --force replaces it");
-  }
-  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
-  if (!std::filesystem::exists(path, none) && ::access(folder.c_str(), W_OK | X_OK) != 0) {
-    text::print(stderr, "rubric: cannot write {}: {}\n", options.path, std::strerror(errno));
-    exit_with(kExitOutput);
-  }
+  check_place("--write", options.path, !grows || options.force);
 }
 
 }  // namespace rubric::cli

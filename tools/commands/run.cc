@@ -22,6 +22,7 @@
 #include "tools/commands/proxy/proxy.h"
 #include "tools/commands/run/islands.h"
 #include "tools/commands/run/json_application.h"
+#include "tools/commands/run/line_output.h"
 #include "tools/commands/run/mote_application.h"
 #include "tools/commands/run/names.h"
 #include "tools/commands/run/station.h"
@@ -81,8 +82,8 @@ constexpr const char* kRunFooter =
     "  rubric run base-station --island 11 --sink sf@localhost:9002\n"
     "  rubric run mote --id 5 --app demo\n"
     "  rubric run islands.yaml --write run.pcapng --log run.rtr\n"
-    "Exit codes: 0 Ctrl-C or stdin ended it, 64 usage, 66 a port is taken, or a file could not be\n"
-    "written.";
+    "Exit codes: 0 Ctrl-C or stdin ended it, 64 usage, 66 a port is taken, 74 --write, --log or\n"
+    "stdout could not be written.";
 
 constexpr std::uint16_t kDeviceMax = 0xFFFC;
 constexpr const char* kNoBroker = "needs a space at a broker (--space)";
@@ -107,11 +108,22 @@ run::StationSetup setup_of(const RunOptions& options) {
 
 void open_files(const RunOptions& options, const std::vector<trace::NodeHeader>& nodes,
                 std::uint64_t seed, run::Keeper& keeper) {
-  if (!options.write.path.empty()) {
-    keeper.open_capture(options.write.path, options.write.growing(),
-                        cli::rotation_of(options.write));
+  const bool opened =
+      options.write.path.empty() || keeper.open_capture(options.write.path, options.write.growing(),
+                                                        cli::rotation_of(options.write));
+  if (!opened) cli::exit_with(cli::kExitOutput);
+  if (options.log.empty()) return;
+  try {
+    keeper.open_log(options.log, options.write.growing(), nodes, seed);
+  } catch (const std::system_error& error) {
+    cli::exit_with(cli::cannot_write(error));
   }
-  if (!options.log.empty()) keeper.open_log(options.log, options.write.growing(), nodes, seed);
+}
+
+// Ends what is kept, after the events. Returns the exit code.
+int finish(const run::LineOutput& events, run::Keeper& keeper) {
+  const bool kept = keeper.finish();
+  return cli::is_written("-", events.error()) && kept ? cli::kExitClean : cli::kExitOutput;
 }
 
 // Reads lines:HOST:PORT.
@@ -140,8 +152,8 @@ int run_station(const RunOptions& options) {
                 server ? name.substr(name.rfind(':')) : "");
   }
   const bool calls = options.app == "-";
-  run::JsonApplication lines(
-      {calls ? STDIN_FILENO : -1, std::make_shared<run::LineOutput>(STDOUT_FILENO, "stdout"), ""});
+  const auto events = std::make_shared<run::LineOutput>(STDOUT_FILENO, "stdout");
+  run::JsonApplication lines({calls ? STDIN_FILENO : -1, events, ""});
   station.add(lines);
   std::optional<run::MoteApplication> mote;
   if (options.is_mote() && !calls) {
@@ -164,7 +176,7 @@ int run_station(const RunOptions& options) {
     station.add(*proxy);
   }
   station.run(lines::stop_requested);
-  return keeper.finish() ? cli::kExitClean : cli::kExitInput;
+  return finish(*events, keeper);
 }
 
 int run_file(const RunOptions& options) {
@@ -184,8 +196,9 @@ int run_file(const RunOptions& options) {
   ecology.home_assistant = options.home_assistant;
   run::Keeper keeper;
   open_files(options, run::nodes_of(ecology), ecology.seed, keeper);
-  run::run_ecology(ecology, options.credentials, keeper);
-  return keeper.finish() ? cli::kExitClean : cli::kExitInput;
+  const auto events = std::make_shared<run::LineOutput>(STDOUT_FILENO, "stdout");
+  run::run_ecology(ecology, options.credentials, keeper, events);
+  return finish(*events, keeper);
 }
 
 void check_names(const RunOptions& options) {
@@ -270,6 +283,10 @@ int run_node(const RunOptions& options) {
   is_file(options.role) ? check_file(options) : check_run(options);
   if (!options.write.path.empty()) cli::check_write(options.write, {}, true);
   cli::keep_apart("--log", options.log, {options.write.path});
+  if (!options.log.empty()) cli::check_place("--log", options.log, options.write.force);
+  if (options.write.force && options.write.path.empty() && options.log.empty()) {
+    throw cli::UsageError("--force requires --write or --log");
+  }
   std::signal(SIGPIPE, SIG_IGN);
   lines::stop_on_signals();
   try {
@@ -386,7 +403,7 @@ void add_run(cli::Command& app) {
       .between(0, 100)
       .show_default();
   sub.add_option("--seed", options->seed, "Seed waits, losses and the first number");
-  cli::add_write_options(sub, options->write, "Keep all frames in this pcapng file", true);
+  cli::add_write_options(sub, options->write, "Keep all frames in this pcapng file", true, true);
   sub.add_option(
          "--space", options->space,
          "Publish a base station's island in the tuple space of this MQTT broker, mqtt:// or "

@@ -347,6 +347,33 @@ islands:
         self.assertEqual(run.end()[0], 0)
         self.assertEqual(path.read_text(encoding="utf-8"), "second first")
 
+    def test_outputs_that_break(self):
+        """Without a reader of stderr it goes on; without one of stdout it ends."""
+        # Threads say that one has joined, and that the application of the other has ended.
+        plan = self.write("islands.yaml", "islands:\n  - {island: 11, radio: 'zep:0', motes: "
+                          "[{id: 2}, {id: 3, app: 'true'}]}\n")
+        for stream in ("2>/dev/full", "2>&1 | head -1"):
+            done = subprocess.run(["bash", "-c", f'timeout -s INT 2 "$0" run "$1" {stream}; '
+                                   'exit ${PIPESTATUS[0]}', RUBRIC, plan], check=False,
+                                  capture_output=True)
+            self.assertIn(done.returncode, (74, 124), done)
+        for what in ((plan,), ("mote", "--id", "5", "--radio", "zep:0")):
+            with open("/dev/full", "wb") as full:
+                done = subprocess.run([RUBRIC, "run", *what], check=False, stdout=full,
+                                      stderr=subprocess.PIPE, timeout=PATIENCE_S)
+            self.assertEqual(done.returncode, 74, done.stderr)
+            self.assertTrue(done.stderr.endswith(
+                b"rubric: cannot write stdout: No space left on device\n"), done.stderr)
+
+    def test_files_that_cannot_be_written(self):
+        node = ("run", "mote", "--id", "5", "--radio", "zep:0")
+        old = self.write("old", "")
+        for option in ("--write", "--log"):
+            self.refused((*node, option, old), f"{option}: {old} exists; --force replaces it")
+            self.refused((*node, option, "/none/x"),
+                         "rubric: cannot write /none/x: No such file or directory", 74)
+        self.refused((*node, "--force"), "--force requires --write or --log")
+
     def test_a_closed_stdout_is_no_file(self):
         kept = self.folder / "run.pcapng"
         command = 'exec "$0" run mote --id 5 --radio zep:0 --app - --write "$1" >&-'

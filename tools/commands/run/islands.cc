@@ -1,7 +1,6 @@
 #include "tools/commands/run/islands.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
@@ -97,8 +96,9 @@ class Plan {
 
 class Islands {
  public:
-  Islands(const Ecology& ecology, const std::string& credentials, Keeper& keeper)
-      : ecology_(ecology), credentials_(credentials), keeper_(keeper) {
+  Islands(const Ecology& ecology, const std::string& credentials, Keeper& keeper,
+          std::shared_ptr<LineOutput> events)
+      : ecology_(ecology), credentials_(credentials), keeper_(keeper), events_(std::move(events)) {
     Plan plan(ecology);
     for (const EcologyIsland& island : ecology.islands) settle(island, plan);
   }
@@ -220,6 +220,7 @@ class Islands {
       fault_ = fmt::format("{}: {}", station.setup().name, broken.what());
       lines::request_stop();
     }
+    if (events_->error() != 0) lines::request_stop();
     if (lines::stop_requested()) return;
     text::print(stderr, "rubric: the application of {} has ended, and the node with it\n",
                 station.setup().name);
@@ -229,7 +230,7 @@ class Islands {
   const Ecology& ecology_;
   const std::string& credentials_;
   Keeper& keeper_;
-  std::shared_ptr<LineOutput> events_ = std::make_shared<LineOutput>(STDOUT_FILENO, "stdout");
+  std::shared_ptr<LineOutput> events_;
   std::shared_ptr<space::MemoryBoard> board_ = std::make_shared<space::MemoryBoard>();
   std::deque<std::unique_ptr<Inhabitant>> inhabitants_;
   std::mutex mutex_;
@@ -250,8 +251,9 @@ std::vector<trace::NodeHeader> nodes_of(const Ecology& ecology) {
   return out;
 }
 
-void run_ecology(const Ecology& ecology, const std::string& credentials, Keeper& keeper) {
-  Islands(ecology, credentials, keeper).run();
+void run_ecology(const Ecology& ecology, const std::string& credentials, Keeper& keeper,
+                 std::shared_ptr<LineOutput> events) {
+  Islands(ecology, credentials, keeper, std::move(events)).run();
 }
 
 }  // namespace rubric::run

@@ -31,7 +31,7 @@ class JsonApplication final : public Application {
   void happened(const machine::Notice& notice, Caller& caller) override;
   lines::SteadyTime run(Caller& caller) override;
   int fd() const override { return ended() ? -1 : ends_.in; }
-  bool ended() const override { return ended_ || ends_.out->closed(); }
+  bool ended() const override { return ended_ || ends_.out->error() != 0; }
   void stop(Caller& caller) override;
 
  private:

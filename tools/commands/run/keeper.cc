@@ -6,7 +6,6 @@
 #include <cstring>
 #include <utility>
 
-#include "codec/lines/broken.h"
 #include "codec/text/text.h"
 #include "conformance/trace/print.h"
 #include "tools/commands/run/wall_clock.h"
@@ -18,9 +17,9 @@ constexpr std::int64_t kWaitNs = 200'000'000;
 
 }  // namespace
 
-void Keeper::open_capture(const std::string& path, Mode mode, const lines::Rotation& rotation) {
+bool Keeper::open_capture(const std::string& path, Mode mode, const lines::Rotation& rotation) {
   capture_.emplace(path, mode, rotation);
-  if (!capture_->open()) throw lines::Broken("the capture cannot be written");
+  return capture_->open();
 }
 
 void Keeper::open_log(const std::string& path, Mode mode,

@@ -22,7 +22,8 @@ class Keeper {
  public:
   using Mode = text::OutFile::Mode;
 
-  void open_capture(const std::string& path, Mode mode, const lines::Rotation& rotation);
+  /// Returns false if the file cannot be opened, having said why on stderr.
+  bool open_capture(const std::string& path, Mode mode, const lines::Rotation& rotation);
   /// Opens the log of these nodes, and of what they state. Throws std::system_error.
   void open_log(const std::string& path, Mode mode, const std::vector<trace::NodeHeader>& nodes,
                 std::uint64_t seed);

@@ -20,7 +20,7 @@ constexpr std::size_t kWaitingMax = 4 << 20;
 // The descriptor may be shared and block. A pipe or terminal that can be written takes so much.
 bool LineOutput::write_some() {
   std::size_t done = 0;
-  while (!closed_ && done < waiting_.size()) {
+  while (error_ == 0 && done < waiting_.size()) {
     pollfd output{fd_, POLLOUT, 0};
     if (::poll(&output, 1, 0) <= 0) break;
     const std::size_t size = std::min<std::size_t>(waiting_.size() - done, PIPE_BUF);
@@ -28,18 +28,18 @@ bool LineOutput::write_some() {
     if (written > 0) {
       done += static_cast<std::size_t>(written);
     } else if (errno != EINTR && errno != EAGAIN) {
-      closed_ = true;
+      error_ = errno;
     } else if (errno == EAGAIN) {
       break;
     }
   }
   waiting_.erase(0, done);
-  return closed_ || waiting_.empty();
+  return error_ != 0 || waiting_.empty();
 }
 
 void LineOutput::put(std::string_view line) {
   const std::lock_guard lock(mutex_);
-  if (closed_) return;
+  if (error_ != 0) return;
   if (waiting_.size() + line.size() > kWaitingMax) {
     if (lost_++ == 0) {
       text::print(stderr, "rubric: {}: its reader is too slow: events are lost\n", name_);
@@ -64,16 +64,16 @@ void LineOutput::finish(lines::SteadyTime deadline) {
     pollfd output{fd_, POLLOUT, 0};
     ::poll(&output, 1, static_cast<int>(left.count()));
   }
-  if (!closed_)
+  if (error_ == 0)
     lost_ += static_cast<std::size_t>(std::count(waiting_.begin(), waiting_.end(), '\n'));
   waiting_.clear();
   if (lost_ != 0) text::print(stderr, "rubric: {}: {} events were lost\n", name_, lost_);
   lost_ = 0;
 }
 
-bool LineOutput::closed() const {
+int LineOutput::error() const {
   const std::lock_guard lock(mutex_);
-  return closed_;
+  return error_;
 }
 
 }  // namespace rubric::run

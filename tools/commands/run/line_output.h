@@ -27,8 +27,9 @@ class LineOutput {
   bool flush();
   /// Writes what waits until the deadline. Says on stderr how many lines were lost.
   void finish(lines::SteadyTime deadline);
-  /// Returns whether the reader has gone.
-  bool closed() const;
+  /// Returns the error, as in errno, with which it took no more, EPIPE if its reader has gone; 0:
+  /// none.
+  int error() const;
 
  private:
   bool write_some();
@@ -38,7 +39,7 @@ class LineOutput {
   mutable std::mutex mutex_;
   std::string waiting_;
   std::size_t lost_ = 0;
-  bool closed_ = false;
+  int error_ = 0;
 };
 
 }  // namespace rubric::run
