@@ -3,6 +3,8 @@
 
 #include <chrono>
 #include <csignal>
+#include <functional>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <random>
@@ -55,6 +57,7 @@ struct RunOptions {
   bool home_assistant = false;
   std::uint64_t listen = 0;
   std::string network;
+  std::function<bool(const char* option)> is_given;
 
   bool is_mote() const { return role == "mote"; }
   bool is_sink() const { return role == "sink"; }
@@ -190,8 +193,8 @@ int run_file(const RunOptions& options) {
   if (!options.space.empty()) ecology.space = options.space;
   if (options.seed) ecology.seed = *options.seed;
   ecology.gone_after_s = options.gone_after_s;
-  if (options.home_assistant && ecology.space.empty()) {
-    throw cli::UsageError("--home-assistant", kNoBroker);
+  for (const char* option : {"--home-assistant", "--credentials"}) {
+    if (ecology.space.empty() && options.is_given(option)) throw cli::UsageError(option, kNoBroker);
   }
   ecology.home_assistant = options.home_assistant;
   run::Keeper keeper;
@@ -214,73 +217,82 @@ void check_names(const RunOptions& options) {
   }
 }
 
+bool is_file(const std::string& role) { return role.ends_with(".yaml") || role.ends_with(".yml"); }
+
+// What can be run, in the order of their bits in kUses.
+constexpr const char* kKinds[] = {"mote", "sink", "base-station", "proxy", "file"};
+enum Kind : unsigned { kMote = 1, kSink = 2, kBaseStation = 4, kProxy = 8, kFile = 16 };
+
+// Which options are for what; those that are for all are not named.
+constexpr struct {
+  const char* option;
+  unsigned kinds;
+  const char* in_file;  // What of a file has the same as a key; null: nothing has.
+} kUses[] = {
+    {"--id", kMote | kSink, "mote"},
+    {"--island", kSink | kBaseStation | kProxy, "island"},
+    {"--radio", kMote | kSink, "island"},
+    {"--serial", kSink, "island"},
+    {"--sink", kBaseStation | kProxy, nullptr},
+    {"--app", kMote | kSink | kBaseStation, "mote or island"},
+    {"--target", kMote, "mote"},
+    {"--type", kMote, "mote"},
+    {"--transducers", kMote, "mote"},
+    {"--actuators", kMote, "mote"},
+    {"--loss", kMote | kSink, "file"},
+    {"--space", kBaseStation | kProxy | kFile, nullptr},
+    {"--home-assistant", kBaseStation | kProxy | kFile, nullptr},
+    {"--credentials", kBaseStation | kProxy | kFile, nullptr},
+    {"--gone-after", kSink | kBaseStation | kProxy | kFile, nullptr},
+    {"--listen", kProxy, nullptr},
+    {"--network", kProxy, nullptr},
+};
+
+// Refuses options that would do nothing.
+void check_uses(const RunOptions& options) {
+  const std::string what = is_file(options.role) ? "file" : options.role;
+  unsigned kind = 1;
+  for (const char* const* name = kKinds; *name != what; ++name) kind *= 2;
+  for (const auto& use : kUses) {
+    if ((use.kinds & kind) != 0 || !options.is_given(use.option)) continue;
+    if (kind == kFile && use.in_file != nullptr) {
+      throw cli::UsageError(use.option, fmt::format("write it in FILE.yaml, as '{}' of a {}",
+                                                    use.option + 2, use.in_file));
+    }
+    std::string known;
+    for (unsigned bit = 0; bit < std::size(kKinds); ++bit) {
+      if ((use.kinds >> bit & 1U) != 0)
+        known += (known.empty() ? "a " : " or ") + std::string(kKinds[bit]);
+    }
+    throw cli::UsageError(use.option, fmt::format("is for {}, not for a {}", known, what));
+  }
+}
+
 void check_run(const RunOptions& options) {
   const bool mote = options.is_mote();
-  const bool sink = options.is_sink();
   if (mote && !options.id) throw cli::UsageError("--id", "a mote needs one");
   if (mote && (*options.id <= node::kSinkId || *options.id > kDeviceMax)) {
     throw cli::UsageError("--id", "of a mote is from 2 to 65532");
   }
-  if (sink && options.id.value_or(node::kSinkId) != node::kSinkId) {
+  if (options.is_sink() && options.id.value_or(node::kSinkId) != node::kSinkId) {
     throw cli::UsageError("--id", "of a sink is 1");
   }
   if (!mote && !options.island) throw cli::UsageError("--island", "is needed by a " + options.role);
-  if (mote && options.island)
-    throw cli::UsageError("--island", "a mote gets its island by joining");
-  if (!sink && !options.serial.empty()) throw cli::UsageError("--serial", "only a sink has one");
-  if (!options.is_proxy() && !options.network.empty()) {
-    throw cli::UsageError("--network", "is a proxy's");
-  }
-  if (options.is_proxy() && options.app == "-") {
-    throw cli::UsageError("--app", "programs reach a proxy at its port");
-  }
   if (!mote && options.app == "demo") throw cli::UsageError("--app", "the demo is a mote's");
-  if (!mote && !options.target.empty()) throw cli::UsageError("--target", "is a mote's");
-  if (mote && options.gone_after_s != 0) {
-    throw cli::UsageError("--gone-after", "is a sink's or base station's");
+  for (const char* option : {"--type", "--transducers", "--actuators"}) {
+    if (options.app != "-" || !options.is_given(option)) continue;
+    throw cli::UsageError(option,
+                          "is for a mote that joins by itself; with --app - its call says it");
   }
-  if (!options.is_base_station() && !options.space.empty()) {
-    throw cli::UsageError("--space", "is a base station's");
-  }
-  if (options.home_assistant && options.space.empty()) {
-    throw cli::UsageError("--home-assistant", kNoBroker);
+  for (const char* option : {"--home-assistant", "--credentials"}) {
+    if (options.space.empty() && options.is_given(option)) throw cli::UsageError(option, kNoBroker);
   }
   check_names(options);
 }
 
-// Refuses options that would do nothing beside a file.
-void check_file(const RunOptions& options) {
-  const RunOptions usual;
-  const struct {
-    const char* option;
-    bool given;
-    const char* instead;
-  } refused[] = {
-      {"--id", options.id.has_value(), "write it in FILE.yaml, as 'id' of a mote"},
-      {"--island", options.island.has_value(), "write it in FILE.yaml, as 'island' of an island"},
-      {"--radio", options.radio != usual.radio, "write it in FILE.yaml, as 'radio' of an island"},
-      {"--serial", !options.serial.empty(), "write it in FILE.yaml, as 'serial' of an island"},
-      {"--sink", options.sink != usual.sink, "each base station of FILE.yaml has its own sink"},
-      {"--app", !options.app.empty(), "write it in FILE.yaml, as 'app' of a mote or island"},
-      {"--target", !options.target.empty(), "write it in FILE.yaml, as 'target' of a mote"},
-      {"--type", options.type != usual.type, "write it in FILE.yaml, as 'type' of a mote"},
-      {"--transducers", options.transducers != usual.transducers,
-       "write it in FILE.yaml, as 'transducers' of a mote"},
-      {"--actuators", options.actuators != usual.actuators,
-       "write it in FILE.yaml, as 'actuators' of a mote"},
-      {"--loss", options.loss_percent != 0, "write it in FILE.yaml, as 'loss' at its top"},
-      {"--listen", options.listen != 0, "is a proxy's"},
-      {"--network", !options.network.empty(), "is a proxy's"},
-  };
-  for (const auto& one : refused) {
-    if (one.given) throw cli::UsageError(one.option, one.instead);
-  }
-}
-
-bool is_file(const std::string& role) { return role.ends_with(".yaml") || role.ends_with(".yml"); }
-
 int run_node(const RunOptions& options) {
-  is_file(options.role) ? check_file(options) : check_run(options);
+  check_uses(options);
+  if (!is_file(options.role)) check_run(options);
   if (!options.write.path.empty()) cli::check_write(options.write, {}, true);
   cli::keep_apart("--log", options.log, {options.write.path});
   if (!options.log.empty()) cli::check_place("--log", options.log, options.write.force);
@@ -369,7 +381,7 @@ void add_run(cli::Command& app) {
       .required();
   sub.add_option("--id", options->id, "Give a mote this id, from 2 to 65532");
   sub.add_option("--island", options->island, "Give a sink or base station this island")
-      .between(0, 65532);
+      .between(1, 65532);
   sub.add_option("--radio", options->radio, "Use this virtual air; port 0 is a free one")
       .check(is_radio, "zep:PORT")
       .show_default();
@@ -432,6 +444,7 @@ void add_run(cli::Command& app) {
       .check(is_network, "lines:HOST:PORT");
   sub.add_option("--log", options->log, "Write what the nodes were given and did to this .rtr file")
       .check(cli::given);
+  options->is_given = [&sub](const char* name) { return sub.get_option(name).is_given(); };
   sub.exit_code_of([options] { return run_node(*options); });
 }
 

@@ -392,7 +392,7 @@ islands:
                               ("--listen", "1"), ("--network", "lines:x:1")):
             code, _, err = rubric("run", plan, option, value)
             self.assertEqual(code, 64, err)
-            self.assertRegex(err, option + ": (write it in FILE.yaml, as|is a|each base)")
+            self.assertRegex(err, option + ": (write it in FILE.yaml|is for .*, not for a file)")
         log = self.folder / "run.rtr"
         run = self.started(plan, "--gone-after", "30", "--log", log)
         run.waits_for(rb"(connected)")
@@ -428,6 +428,8 @@ islands:
                 (island + "    app: demo\n", 3, "app: the demo is a mote's"),
                 (island + "    sink_app: demo\n", 3, "sink_app: the demo is a mote's"),
                 (island + "    motes: [{id: 2, app: '-'}]\n", 3, "app: expected a command"),
+                (island + "    motes: [{id: 2, app: door, type: 1}]\n", 3,
+                 "type is for a mote that joins by itself"),
                 (island + "    motes: [{id: 2, app: a b: c}]\n", 3,
                  "a colon or comma needs quotes"),
                 ("islands:\n\t- island: 11\n", 2, "a tab before the text"),
@@ -490,15 +492,28 @@ islands:
         for arguments, text in (
                 (("mote",), "--id: a mote needs one"),
                 (("mote", "--id", "1"), "from 2 to 65532"),
-                (("mote", "--id", "2", "--island", "11"), "by joining"),
+                (("mote", "--id", "2", "--island", "11"),
+                 "--island: is for a sink or base-station or proxy, not for a mote"),
                 (("sink",), "--island: is needed by a sink"),
                 (("sink", "--island", "65535"), "--island"),
+                (("sink", "--island", "0"), "--island"),
+                (("sink", "--island", "11", "--sink", "sf@x:1"),
+                 "--sink: is for a base-station or proxy, not for a sink"),
+                (("mote", "--id", "2", "--listen", "0"), "--listen: is for a proxy"),
+                (("base-station", "--island", "11", "--radio", "zep:17754"),
+                 "--radio: is for a mote or sink"),
+                (("base-station", "--island", "11", "--transducers", "temp"),
+                 "--transducers: is for a mote"),
+                (("mote", "--id", "2", "--app", "-", "--type", "2"),
+                 "--type: is for a mote that joins by itself"),
+                (("base-station", "--island", "11", "--credentials", "x"),
+                 "--credentials: needs a space at a broker"),
                 (("mote", "--id", "2", "--radio", "sf@x:1"), "expected zep:PORT"),
                 (("sink", "--island", "11", "--serial", "9002"), "expected sf-server:PORT"),
                 (("sink", "--island", "11", "--app", "demo"), "the demo is a mote's"),
                 (("mote", "--id", "2", "--actuators", "hand"), "'hand' is none of: led open"),
                 (("mote", "--id", "2", "--type", "z1"), "none of: telosb_demo"),
-                (("sink", "--island", "11", "--space", "mqtt://x"), "is a base station's"),
+                (("sink", "--island", "11", "--space", "mqtt://x"), "is for a base-station or"),
                 (("base-station", "--island", "11", "--space", "http://x"), "mqtt://HOST"),
                 (("base-station", "--island", "11", "--space", "mqtt://me:secret@x"),
                  "into a file or the environment"),

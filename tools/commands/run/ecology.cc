@@ -128,6 +128,13 @@ EcologyMote mote_of(const YAML::Node& node) {
     mote.descriptor.actuators = named(at->second, "actuators", actuators_of);
   }
   if (values.contains("app")) mote.app = app_of(values["app"], "app");
+  const bool joins = mote.app.empty() || mote.app == "demo";
+  for (const char* key : {"type", "transducers", "actuators"}) {
+    if (joins || !values.contains(key)) continue;
+    throw Mistake{
+        line_of(values[key]),
+        fmt::format("{} is for a mote that joins by itself; its app's call says it", key)};
+  }
   if (const auto at = values.find("target"); at != values.end()) {
     mote.target = text_of(at->second, "target");
   }
