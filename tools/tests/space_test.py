@@ -316,6 +316,8 @@ class Space(LiveTest):
                     ('{"command":"' + "a" * 101 + '"}', "over 100 bytes"),
                     ('{"data":"0"}', "in hex"), ('{"data":"00","app_id":256}', "from 0 to 255"),
                     ('{"sampling_ms":1,"transducers":["lite"]}', "'lite' is none of"),
+                    ('{"sampling_ms":1,"transducers":["humid"]}', "the mote has no humid"),
+                    ('{"sampling_ms":1}', "transducers is missing"),
                     ('{"sampling_ms":70000,"transducers":[]}', "from 0 to 65535"),
                     ('{"creator":"me","time":"now","data":{}}', "expected a time"),
                     ('{"x":"' + "a" * 5000 + '"}', "over 4096 bytes"))):
@@ -341,7 +343,13 @@ class Space(LiveTest):
         self.assertRegex(err, r"space: refused \d+ more")
 
     def test_a_wish_that_stays_is_refused(self):
-        self.broker.publish("rubicon/11/motes/5/set", '{"command":"OPEN_DOOR"}', "-r")
+        """It is one like any other for who is there, and is refused at each start."""
+        subscriber = Subscriber(self, self.broker, "rubicon/11/events")
+        base, air = self.island(11)
+        self.mote(5, air)
+        self.broker.publish("rubicon/11/motes/5/set", '{"command":"OPEN_DOOR","id":"stays"}', "-r")
+        subscriber.event(event="done", id="stays")
+        self.assertEqual(base.end()[0], 0)
         base, _ = self.island(11)
         base.waits_for(rb"(refused 11/motes/5/set: a wish that stays)")
 

@@ -45,7 +45,8 @@ void MoteApplication::happened(const machine::Notice& notice, Caller&) {
 void MoteApplication::asked(Bytes data) {
   const auto view = rubicon::ReadUpdatesView::parse(data);
   if (!view || view->type() != rubicon::AmType::kReadUpdates) return;
-  transducers_ = view->transducers().raw();
+  // What it does not have it cannot read.
+  transducers_ = static_cast<std::uint16_t>(view->transducers().raw() & descriptor_.transducers);
   period_ = lines::Milliseconds(view->sampling_rate());
   send_at_ = steady_clock::now() + std::max(period_, kShortest);
 }

@@ -31,6 +31,13 @@ std::string printable(std::string_view text) {
   return out;
 }
 
+// Says which of these transducers a mote has not; empty if it has all, or is not described.
+std::string lacks(const Mote& mote, std::uint16_t transducers) {
+  const auto lacking = static_cast<std::uint16_t>(transducers & ~mote.descriptor.transducers);
+  if (mote.joined_ms == 0 || lacking == 0) return {};
+  return fmt::format("the mote has no {}", fmt::join(run::transducer_names(lacking), ", "));
+}
+
 }  // namespace
 
 void Gateway::start(run::Caller&) {
@@ -185,6 +192,7 @@ void Gateway::take_wish(const Tuple& tuple, std::uint16_t mote, run::Caller& cal
   if (wrong.empty() && !members_.contains(mote)) {
     wrong = fmt::format("mote {} has not joined island {}", mote, settings_.island);
   }
+  if (wrong.empty()) wrong = lacks(members_.at(mote).mote, wish.transducers);
   machine::Send send;
   send.dest = {settings_.island, mote};
   send.app_id = wish.app_id;

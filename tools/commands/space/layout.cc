@@ -63,8 +63,14 @@ Json object_of(std::string_view text) {
   return json;
 }
 
+const Json& value_at(const Json& json, const char* name) {
+  const auto found = json.find(name);
+  if (found == json.end()) throw Refusal(fmt::format("{} is missing", name));
+  return *found;
+}
+
 string text_at(const Json& json, const char* name, std::size_t max) {
-  const Json& value = json.at(name);
+  const Json& value = value_at(json, name);
   if (!value.is_string()) throw Refusal(fmt::format("{}: expected a text", name));
   string text = value.get<string>();
   if (text.size() > max) throw Refusal(fmt::format("{}: over {} bytes", name, max));
@@ -73,7 +79,7 @@ string text_at(const Json& json, const char* name, std::size_t max) {
 
 template <class Number>
 Number number_at(const Json& json, const char* name) {
-  const Json& value = json.at(name);
+  const Json& value = value_at(json, name);
   constexpr auto max = std::numeric_limits<Number>::max();
   if (!value.is_number_integer() || value < 0 || value > max) {
     throw Refusal(fmt::format("{}: expected a number from 0 to {}", name, max));
@@ -131,7 +137,7 @@ std::int64_t time_of(const string& text) {
 
 string names_at(const Json& json, const char* name) {
   string out;
-  const Json& list = json.at(name);
+  const Json& list = value_at(json, name);
   if (!list.is_array()) throw Refusal(fmt::format("{}: expected a list of names", name));
   for (const Json& each : list) {
     if (!each.is_string()) throw Refusal(fmt::format("{}: expected names", name));
@@ -242,7 +248,7 @@ string parse_payload(std::string_view payload, Tuple& tuple) {
     check_keys(json, {"creator", "time", "data"});
     tuple.creator = text_at(json, "creator", kTextMax);
     tuple.written_ms = time_of(text_at(json, "time", kTextMax));
-    if (!json.at("data").is_object()) throw Refusal("data: expected a JSON object");
+    if (!value_at(json, "data").is_object()) throw Refusal("data: expected a JSON object");
     tuple.data = text_of(json.at("data"));
   });
 }
@@ -267,7 +273,7 @@ string parse_net(const Tuple& tuple, std::vector<std::uint8_t>& packet) {
     const std::optional<Key> key = parse_key(tuple.key);
     tinyos::AmHeader header;
     header.src = number_at<std::uint16_t>(json, "src");
-    const bool all = json.at("dest") == kAll;
+    const bool all = value_at(json, "dest") == kAll;
     header.dest = all ? machine::kBroadcastPid : number_at<std::uint16_t>(json, "dest");
     if (machine::is_reserved(header.src)) throw Refusal("src: no island has this number");
     if (!key || key->kind != Key::Kind::kNet || key->island != header.dest) {
@@ -353,8 +359,8 @@ string parse_wish(const string& data, Wish& wish) {
       rubicon::ReadUpdates message;
       message.type = rubicon::AmType::kReadUpdates;
       message.sampling_rate = number_at<std::uint16_t>(json, "sampling_ms");
-      message.transducers =
-          rubicon::TransducerMask(run::transducers_of(names_at(json, "transducers")));
+      wish.transducers = run::transducers_of(names_at(json, "transducers"));
+      message.transducers = rubicon::TransducerMask(wish.transducers);
       wish.data.resize(rubicon::ReadUpdatesView::kMaxSizeBytes);
       rubicon::ReadUpdatesLayout::store(message, wish.data.data());
     } else if (json.contains("data")) {

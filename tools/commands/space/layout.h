@@ -74,6 +74,7 @@ struct Wish {
   std::string id;  ///< Given back in events; empty: none.
   std::uint8_t app_id = 0;
   bool reliable = true;
+  std::uint16_t transducers = 0;  ///< Whose readings are asked for.
   std::vector<std::uint8_t> data;
 };
 std::string parse_wish(const std::string& data, Wish& wish);
