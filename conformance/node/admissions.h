@@ -39,6 +39,8 @@ class Admissions {
   /// Returns the member whose report has waited longest, or null.
   Admission* owed();
   bool lists(uint16_t devid);
+  uint8_t members() const { return members_; }
+  bool is_full() const { return members_ == members_max_; }
   /// Takes a mote off the list; returns false while its report is owed.
   bool forget(uint16_t devid);
 
@@ -95,7 +97,7 @@ inline bool Admissions::request(uint16_t devid, uint16_t seq_num, const Descript
   //= J2-LISTED: A sink ignores a join_request of a mote that is already in its list.
   if (entry != nullptr && entry->state != Admission::State::kPending) return false;
   //= J3-FULL: A sink whose list is full does not answer a mote that it does not list.
-  if (members_ == members_max_) return false;
+  if (is_full()) return false;
   //= J9-INTERLEAVE: Joins of several motes may interleave at a sink; each keeps its own sequence
   //= number and descriptor.
   if (entry != nullptr) erase(static_cast<uint8_t>(entry - entries_));
@@ -116,7 +118,7 @@ inline Admission* Admissions::acknowledge(uint16_t devid, uint16_t seq_num) {
   //= join.
   if (entry->state != Admission::State::kPending) return nullptr;
   //= J3-OVERWRITE: A new mote never takes the place of a listed member.
-  if (members_ == members_max_) return nullptr;
+  if (is_full()) return nullptr;
   ++members_;
   entry->state = Admission::State::kOwed;
   return entry;

@@ -110,6 +110,9 @@ class Node {
   uint32_t clock_ms() const { return time_ms() + clock_offset_ms_; }
   /// Returns whether a sink lists the mote.
   bool lists(uint16_t devid) { return admissions_.lists(devid); }
+  /// Return how many motes a sink lists, and whether no other fits.
+  uint8_t members() const { return admissions_.members(); }
+  bool list_is_full() const { return admissions_.is_full(); }
   /// Takes a mote that has left off a sink's list, as no message says goodbye; see silence.h.
   /// Returns false while its report to the base station is owed.
   bool forget(uint16_t devid) { return admissions_.forget(devid); }

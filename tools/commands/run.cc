@@ -145,7 +145,7 @@ int run_station(const RunOptions& options) {
   run::Keeper keeper;
   open_files(options, {run::header_of(setup)}, setup.seed, keeper);
   run::Station station(setup, keeper);
-  if (setup.role != node::Role::kBaseStation && setup.air.port == 0) {
+  if (setup.role != node::Role::kBaseStation) {
     text::print(stderr, "rubric: zep:{}\n", station.air_port());
   }
   if (!setup.offered.empty()) {

@@ -16,7 +16,7 @@ import time
 import unittest
 
 from live_testing import Flood, LiveTest, Running, lines_of
-from serial_testing import PATIENCE_S, read_until
+from serial_testing import PATIENCE_S, held_port, read_until
 from station_load import PACKET, message
 from testing import ROOT, RUBRIC, rubric
 
@@ -521,6 +521,9 @@ islands:
                  "--home-assistant: needs a space at a broker"),
                 (("robot",), "expected mote, sink, base-station, proxy or FILE.yaml")):
             self.refused(("run", *arguments), text)
+        with held_port() as port:
+            sink = self.started("sink", "--island", "11", "--radio", f"zep:{port}")
+            sink.waits_for(f"rubric: (zep:{port})\n".encode())
         with socket.create_server(("127.0.0.1", 0)) as taken:
             port = taken.getsockname()[1]
             self.refused(("run", "sink", "--island", "11", "--radio", "zep:0", "--serial",
@@ -538,6 +541,13 @@ islands:
             self.assertEqual(one.lines(1)[0]["event"], "error")
         one.process.stdin.close()
         self.assertEqual(one.end(None)[0], 0)
+
+    def test_a_full_list_is_told(self):
+        motes = "".join(f"      - {{id: {number}}}\n" for number in range(2, 23))
+        run = self.started(self.write("islands.yaml", "islands:\n  - island: 11\n    radio: zep:0\n"
+                                                      f"    motes:\n{motes}"))
+        self.assertEqual(run.waits_for(rb"sink11: its list is full with (\d+) motes"), "20")
+        self.assertEqual(run.end()[0], 0)
 
 
 class Minute(Run):

@@ -1,6 +1,7 @@
 // The Communication Layer of a station: the project's own node, or another implementation.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 
@@ -36,6 +37,8 @@ class Layer {
   /// Returns whether its radio is on.
   virtual bool listens() const = 0;
   virtual std::uint16_t island() const = 0;
+  /// Returns how many motes fill a sink's list; 0: it has room, or there is none.
+  virtual std::size_t full_list() const { return 0; }
 };
 
 }  // namespace rubric::run

@@ -18,6 +18,7 @@ class OwnLayer final : public Layer, private node::Driver, private node::Applica
   std::optional<machine::Notice> call(const machine::Call& call) override;
   bool listens() const override { return node_.interface_is_on(node::Line::kRadio); }
   std::uint16_t island() const override { return node_.address().pid; }
+  std::size_t full_list() const override { return node_.list_is_full() ? node_.members() : 0; }
 
  private:
   // node::Driver

@@ -182,6 +182,12 @@ std::optional<machine::Notice> Station::call(const machine::Call& call) {
 
 void Station::happened(const machine::Notice& notice) {
   keeper_.did(names_, notice);
+  const std::size_t full =
+      std::holds_alternative<machine::MoteJoined>(notice) ? layer_->full_list() : 0;
+  if (full != 0) {
+    text::print(stderr, "rubric: {}: its list is full with {} motes: it answers no other\n",
+                setup_.name, full);
+  }
   for (run::Application* application : applications_) application->happened(notice, *this);
 }
 
