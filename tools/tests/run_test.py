@@ -539,6 +539,12 @@ islands:
             one.process.stdin.write(call)
             one.process.stdin.flush()
             self.assertEqual(one.lines(1)[0]["event"], "error")
+        for call, says in ((b'{"call":"get_clock","x":1}\n', "unknown key 'x'"), (
+                b'{"call":"write_output","channel":"1->2","pos":0,"value":1e300}\n',
+                "value: expected a number that a float holds")):
+            one.process.stdin.write(call)
+            one.process.stdin.flush()
+            self.assertEqual(one.lines(1)[0], {"event": "error", "text": says})
         one.process.stdin.close()
         self.assertEqual(one.end(None)[0], 0)
 

@@ -7,8 +7,10 @@
 #include <cerrno>
 #include <charconv>
 #include <chrono>
+#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -56,7 +58,10 @@ class CallArguments {
   }
   float real(const char* name) const {
     const Json& value = at(name);
-    if (!value.is_number()) throw std::invalid_argument(fmt::format("{}: a number", name));
+    constexpr double max = std::numeric_limits<float>::max();
+    if (!value.is_number() || std::abs(value.get<double>()) > max) {
+      throw std::invalid_argument(fmt::format("{}: expected a number that a float holds", name));
+    }
     return value.get<float>();
   }
   machine::Address address(const char* name) const {
@@ -80,9 +85,16 @@ class CallArguments {
     if (!value.is_string()) throw std::invalid_argument(fmt::format("{}: expected a text", name));
     return value.get<std::string>();
   }
+  /// Throws if there are more than were asked for.
+  void check_all_known() const {
+    for (const auto& [key, value] : json_.items()) {
+      if (!known_.contains(key)) throw std::invalid_argument(fmt::format("unknown key '{}'", key));
+    }
+  }
 
  private:
   const Json& at(const char* name) const {
+    known_.insert(name);
     const auto found = json_.find(name);
     if (found == json_.end()) throw std::invalid_argument(fmt::format("{} is missing", name));
     return *found;
@@ -96,6 +108,7 @@ class CallArguments {
   }
 
   const Json& json_;
+  mutable std::set<std::string> known_;
 };
 
 machine::Call call_of(const std::string& name, const CallArguments& with,
@@ -252,12 +265,14 @@ void JsonApplication::call(const std::string& line, Caller& caller) {
     if (!json.is_object()) throw std::invalid_argument("expected an object with \"call\"");
     const CallArguments with(json);
     std::vector<std::uint8_t> data;
-    const auto answer = caller.call(call_of(with.text("call"), with, data));
+    const machine::Call call = call_of(with.text("call"), with, data);
+    with.check_all_known();
+    const auto answer = caller.call(call);
     if (answer) print(json_line(*answer, ends_.node));
   } catch (const std::invalid_argument& error) {
     print_error(error.what());
   } catch (const Json::exception& error) {
-    print_error(error.what());
+    print_error(fmt::format("no JSON: {}", error.what()));
   }
 }
 
