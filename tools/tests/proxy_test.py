@@ -144,6 +144,7 @@ class Proxy(ProxyTest):
         one, two = Client(self, self.port), Client(self, self.port)
         # A device that is not there yet is read when it comes.
         one.say(subscribe="11:5", sensors=["light"], period_ms=500)
+        one.event("awaited", device="11:5")
         one.say(subscribe="1/1/8", period_ms=10_000)
         self.assertEqual(self.asked.next(), "watch 1/1/8 10000 state")
         mote = self.mote()
@@ -195,6 +196,7 @@ class Proxy(ProxyTest):
         # What makes no sense is an error for who said it, and for nobody else.
         other = Client(self, self.port)
         for wrong in ("{", "[]", '{"subscribe":5}', '{"subscribe":"1/1/8","period_ms":0}', "{}",
+                      '{"subscribe":"1/1/8","sensors":["humid"]}', "x" * 5000,
                       '{"command":"on","device":"1/1/7"}', '{"command":"ON !","device":"1/1/8"}'):
             other.source.sendall(wrong.encode() + b"\n")
             while (event := json.loads(other.next()))["event"] != "error":

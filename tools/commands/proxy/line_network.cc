@@ -97,7 +97,7 @@ void LineNetwork::take(std::string_view line) {
   const std::vector<std::string> words = words_of(line);
   const bool named = words.size() >= 2 && is_name(words[1]);
   if (named && words[0] == "there" && words.size() <= 2 + kWordMax) {
-    Device device{words[1], {}, {}};
+    Device device{words[1], {}, {}, true};
     std::set<std::string>* kind = &device.sensors;
     for (auto word = words.begin() + 2; word != words.end(); ++word) {
       if (*word == "-") {

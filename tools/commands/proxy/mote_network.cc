@@ -113,7 +113,8 @@ void MoteNetwork::received(const machine::Received& message) {
   }
   if (news) {
     above_.joined({device_of(mote), member.sensors,
-                   set_of(run::actuator_names(member.mote.descriptor.actuators))});
+                   set_of(run::actuator_names(member.mote.descriptor.actuators)),
+                   member.described});
   }
   if (!state.empty()) above_.read(device_of(mote), state);
 }

@@ -18,6 +18,7 @@ struct Device {
   std::string id;  ///< Unique over all networks: 11:5, 1/1/7.
   std::set<std::string> sensors;
   std::set<std::string> actuators;
+  bool is_described = true;  ///< It has no other sensors.
 };
 
 /// What subscribers want of a device together; a period of 0 ends its readings.

@@ -21,7 +21,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 using std::chrono::steady_clock;
 
-constexpr std::size_t kRequestMax = 4096;
 constexpr std::size_t kOutputMax = 1 << 20;  // A client that reads nothing is let go.
 constexpr std::size_t kClientsMax = 64;
 constexpr std::size_t kWantsMax = 1024;
@@ -132,14 +131,10 @@ bool Proxy::read(Client& client) {
           client.stream.read(MutableBytes(room, sizeof room), steady_clock::now());
       more = size > 0;
       if (!more) break;
-      client.input.append(reinterpret_cast<const char*>(room), size);
-      std::size_t begin = 0;
-      for (std::size_t end = 0; (end = client.input.find('\n', begin)) != std::string::npos;
-           begin = end + 1) {
-        take(client, client.input.substr(begin, end - begin));
-      }
-      client.input.erase(0, begin);
-      if (client.input.size() > kRequestMax) client.stream.close();
+      client.input.add(
+          {reinterpret_cast<const char*>(room), size},
+          [&](const std::string& line) { take(client, line); },
+          [&] { put_error(client, fmt::format("a line of more than {} bytes", kRequestMax)); });
     }
     put(client, "");
   } catch (const lines::Broken&) {
@@ -154,9 +149,7 @@ void Proxy::take(Client& client, const std::string& line) {
     if (!json.is_object()) throw std::invalid_argument("expected an object");
     if (json.contains("subscribe")) {
       const std::string device = text_at(json, "subscribe");
-      if (client.wants.size() >= kWantsMax) throw std::invalid_argument("too many subscriptions");
-      client.wants[device] = sampling_of(json);
-      return apply(device);
+      return subscribe(client, device, sampling_of(json));
     }
     if (json.contains("unsubscribe")) {
       const std::string device = text_at(json, "unsubscribe");
@@ -172,10 +165,28 @@ void Proxy::take(Client& client, const std::string& line) {
         known->second.network->command(known->first, text_at(json, "command"));
     if (!wrong.empty()) throw std::invalid_argument(wrong);
   } catch (const std::invalid_argument& error) {
-    put(client, text_of({{"event", "error"}, {"text", error.what()}}));
+    put_error(client, error.what());
   } catch (const Json::exception& error) {
-    put(client, text_of({{"event", "error"}, {"text", error.what()}}));
+    put_error(client, fmt::format("no JSON: {}", error.what()));
   }
+}
+
+void Proxy::subscribe(Client& client, const std::string& device, const Sampling& wanted) {
+  if (client.wants.size() >= kWantsMax) throw std::invalid_argument("too many subscriptions");
+  const auto found = devices_.find(device);
+  const bool is_there = found != devices_.end();
+  for (const std::string& sensor : wanted.sensors) {
+    if (!is_there || !found->second.device.is_described) break;
+    if (found->second.device.sensors.contains(sensor)) continue;
+    throw std::invalid_argument(fmt::format("{} has no sensor '{}'", device, sensor));
+  }
+  client.wants[device] = wanted;
+  if (!is_there) put(client, text_of({{"event", "awaited"}, {"device", device}}));
+  apply(device);
+}
+
+void Proxy::put_error(Client& client, const std::string& text) {
+  put(client, text_of({{"event", "error"}, {"text", text}}));
 }
 
 void Proxy::put(Client& client, std::string line) {

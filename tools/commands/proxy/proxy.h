@@ -11,6 +11,7 @@
 #include "tools/commands/proxy/line_network.h"
 #include "tools/commands/proxy/mote_network.h"
 #include "tools/commands/run/application.h"
+#include "tools/commands/run/line_splitter.h"
 
 namespace rubric::proxy {
 
@@ -21,7 +22,8 @@ namespace rubric::proxy {
 ///   {"command":"open","device":"1/1/8"}
 ///
 /// They get {"event":"device"}, at once for those that are there, "left", and "reading" for what
-/// they subscribed to; "error" for a line that makes no sense. A device is read as often as its
+/// they subscribed to; "awaited" for a subscription to what is not there yet, and "error" for a
+/// line that makes no sense. A device is read as often as its
 /// most eager subscriber wants, and again when it comes back.
 class Proxy final : public run::Application, private Above {
  public:
@@ -36,9 +38,11 @@ class Proxy final : public run::Application, private Above {
   int fd() const override { return poll_.get(); }
 
  private:
+  static constexpr std::size_t kRequestMax = 4096;
+
   struct Client {
     lines::ByteStream stream;
-    std::string input;
+    run::LineSplitter input{kRequestMax};
     std::string output;
     std::map<std::string, Sampling> wants;  // By device.
   };
@@ -57,6 +61,8 @@ class Proxy final : public run::Application, private Above {
   /// Returns whether there may be more to read.
   bool read(Client& client);
   void take(Client& client, const std::string& line);
+  void subscribe(Client& client, const std::string& device, const Sampling& wanted);
+  void put_error(Client& client, const std::string& text);
   void put(Client& client, std::string line);
   void put_all(const std::string& line);
   void watch(int fd) const;
