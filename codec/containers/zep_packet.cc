@@ -220,7 +220,7 @@ bool decode_zep_datagram(Bytes datagram, Packet& packet) {
   }
   packet.time_ns = zep->time_ns;
   const Bytes frame = zep->frame;
-  if (frame.empty()) return false;
+  if (frame.empty() || zep->type == ZepPacket::Type::kHello) return false;
   packet.offset_bytes += zep->frame_offset_bytes;
   packet.radio.channel = zep->channel;
   constexpr std::uint8_t kLqiUnknown = 255;

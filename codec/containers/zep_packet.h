@@ -12,9 +12,9 @@ namespace rubric {
 inline constexpr std::uint16_t kZepPort = 17754;
 
 struct ZepPacket {
-  enum class Type : std::uint8_t { kData = 1, kAck = 2 };
+  enum class Type : std::uint8_t { kData = 1, kAck = 2, kHello = 255 };
   std::uint8_t version = 2;
-  Type type = Type::kData;  ///< Other values carry a frame, too.
+  Type type = Type::kData;  ///< Others carry a frame, too, but for a hello of RIOT: an address.
   std::uint8_t channel = 26;
   std::uint16_t device = 0;
   /// The frame ends with its FCS; else its last two bytes are what a CC24xx chip puts there.
@@ -35,8 +35,8 @@ void append_zep(const ZepPacket& zep, std::string& out);
 
 /// Reads the radio frame in a datagram into `packet`; offset_bytes moves from the datagram's first
 /// byte to the frame control field; time_ns is the sender's. Returns false for a sound packet
-/// without frame, such as an ack. A malformed datagram is a radio frame with an error and the bytes
-/// as they are.
+/// without frame, an ack or a hello. A malformed datagram is a radio frame with an error and the
+/// bytes as they are.
 bool decode_zep_datagram(Bytes datagram, Packet& packet);
 
 /// Returns whether records of this link type are packets of a network: Ethernet, IP of either

@@ -22,9 +22,10 @@ RADIO = "spec/captures/firmware/g2_stray_reply_while_joining.pcapng"
 NTP_TO_1970 = 2_208_988_800
 
 
-def zep(frame, number=1, device=2):
-    return b"EX\x02\x01" + struct.pack(">BHBBII", 26, device, 1, 255, NTP_TO_1970 + 1000, 1 << 31) \
-        + struct.pack(">I", number) + bytes(10) + bytes([len(frame)]) + frame
+def zep(frame, number=1, device=2, channel=26):
+    stamp = (NTP_TO_1970 + 1000, 1 << 31)
+    return b"EX\x02\x01" + struct.pack(">BHBBIII", channel, device, 1, 255, *stamp, number) \
+        + bytes(10) + bytes([len(frame)]) + frame
 
 
 def radio_frames():
@@ -75,6 +76,14 @@ class Zep(LiveTest):
         self.assertEqual(faults, ["WIRE-RADIO-FCS", "WIRE-ZEP"])
         self.assertEqual(running.end()[0], 1)
         self.assertEqual(len(lines_of(kept)), len(frames) + 2)
+
+    def test_a_node_hears_its_channel(self):
+        _, port = self.hub("run", "sink", "--island", "11", "--radio", "zep:0")
+        station = Station(self, port)
+        for dsn, channel in ((7, 11), (8, 26)):  # Data for mote 1, which are to be confirmed.
+            frame = bytes.fromhex(f"6188{dsn:02x}2200010005003f06")
+            station.send(zep(frame + fcs(frame), device=5, channel=channel))
+        self.assertEqual(station.socket.recv(128)[32:35], bytes.fromhex("020008"))
 
     def test_a_hub_passes_frames_on_and_another_takes_its_place(self):
         hub, port = self.hub("decode", "zep:0", "--format", "jsonl")

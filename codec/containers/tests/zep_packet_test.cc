@@ -131,6 +131,13 @@ TEST(Zep, AnAckCarriesNoFrame) {
   EXPECT_FALSE(decode_zep_datagram(as_bytes(datagram), packet));
 }
 
+TEST(Zep, AHelloCarriesAnAddress) {
+  std::string datagram = sound_datagram();
+  datagram[3] = '\xFF';
+  Packet packet;
+  EXPECT_FALSE(decode_zep_datagram(as_bytes(datagram), packet));
+}
+
 std::string big16(std::size_t value) {
   return {static_cast<char>(value >> 8), static_cast<char>(value)};
 }

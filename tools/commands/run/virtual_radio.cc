@@ -103,6 +103,8 @@ void VirtualRadio::finish(bool acked) {
 void VirtualRadio::handle(Bytes datagram) {
   Packet packet;
   if (!decode_zep_datagram(datagram, packet)) return;
+  constexpr std::int32_t kChannel = ZepPacket().channel;  // Also of what it sends.
+  if (packet.radio.channel != kAbsent && packet.radio.channel != kChannel) return;
   packet.time_ns = lines::air_time_ns(packet.time_ns);
   const std::vector<std::uint8_t> kept(packet.bytes.begin(), packet.bytes.end());
   packet.bytes = Bytes(kept.data(), kept.size());
