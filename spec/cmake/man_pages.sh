@@ -7,8 +7,19 @@ rm -rf "$folder"
 mkdir -p "$folder"
 version=$("$rubric" --version)
 
+about=$(mktemp)
+trap 'rm -f "$about"' EXIT
+cat > "$about" <<'END'
+[files]
+.TP
+.I share/doc/rubric/rubric.html
+The book, beside share/man, if it was built before the installation (target "book", see README.md
+there).
+END
+
 page() {  # page NAME WHAT COMMAND
   "$help2man" --no-info --no-discard-stderr --version-string="$version" --name="$2" \
+    --include="$about" \
     --output="$folder/$1.1" "$3"
   sed -i "1,/^\.TH/s/^\.TH .*/.TH ${1^^} 1 \"\" \"rubric $version\" \"User Commands\"/" "$folder/$1.1"
 }
