@@ -390,7 +390,9 @@ void SinkJoins::reply(std::uint16_t sink_device, const Observation& seen, const 
     context_.findings.kept("J3-SEQ"_rule);
     context_.findings.kept("J3-ONCE"_rule);
     context_.findings.kept("J3-DEST"_rule);
-    const std::size_t members = listed(*sink);
+    // What was granted while there was room may wait for the air until there is none.
+    const std::size_t members =
+        listed(*sink, watch.asked ? watch.request.time_us : seen.place.time_us);
     const bool new_mote =
         std::none_of(next_.begin(), next_.end(), [](const SinkHypothesis& h) { return h.member; });
     if (new_mote && members >= context_.profile(sink_device).members_max) {
@@ -550,9 +552,11 @@ void SinkJoins::keep(SinkWatch& sink, PairWatch& watch, std::vector<SinkHypothes
   watch.set.assign(1, unknown);
 }
 
-std::size_t SinkJoins::listed(const SinkWatch& sink) const {
+std::size_t SinkJoins::listed(const SinkWatch& sink, std::int64_t since_us) const {
   std::size_t count = 0;
-  for (const auto& [am, watch] : sink.motes) count += surely_lists(watch) ? 1 : 0;
+  for (const auto& [am, watch] : sink.motes) {
+    count += surely_lists(watch) && watch.admitted_us <= since_us ? 1 : 0;
+  }
   return count;
 }
 

@@ -177,8 +177,8 @@ class SinkJoins {
   std::vector<SinkWatch>& all() { return sinks_; }
   PairWatch& pair(SinkWatch& sink, std::uint16_t mote_am);
   void keep(SinkWatch& sink, PairWatch& watch, std::vector<SinkHypothesis>& next, const Place& at);
-  /// Returns how many motes the sink surely lists.
-  std::size_t listed(const SinkWatch& sink) const;
+  /// Returns how many motes the sink surely lists, since that time at the latest.
+  std::size_t listed(const SinkWatch& sink, std::int64_t since_us = INT64_MAX) const;
   static std::string sentence(const SinkHypothesis& h);
 
  private:
