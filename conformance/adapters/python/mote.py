@@ -166,7 +166,7 @@ class Mote:
     def heard(self, src, am_type, payload):
         if am_type == JOIN_REPLY:
             self.join_reply(src, payload)
-        message = unpacked(payload) if am_type == NET else None
+        message = unpacked(payload) if am_type == NET and self.address else None
         if message is None:
             return
         if not self.application_busy:

@@ -299,6 +299,31 @@ TEST_F(BrokenAdapters, ASinkIsHeldToTheMembersThatItIsAskedFor) {
   EXPECT_EQ(states.verdict, CaseVerdict::kFail) << "It lists twenty.";
 }
 
+// A node that no `reset` can give other buffers passes where it is not asked for them.
+TEST_F(BrokenAdapters, ANodeIsAskedForTheBuffersThatItStates) {
+  const auto run = [](const std::string& says, const trace::Statement& stated) {
+    const trace::Parsed one =
+        trace::parse("%rtr 1\n%node m5 mote id=5" + says +
+                         " iut\ncase silent\n @0..1024 m5 !> rA * [J1-CALLED]\n",
+                     "a.rtr");
+    Options options;
+    options.stated = stated;
+    const auto node =
+        attach("sed -u '/buffers=/s/^reset/resize/' | " RUBRIC_MACHINE_ADAPTER, options);
+    return runner::run_case(one.file, one.file.cases.at(0),
+                            [&](const trace::NodeHeader&) { return node->target(); });
+  };
+  const trace::Statement eight = {{trace::ParameterId::kBuffers, 8}};
+  EXPECT_EQ(run("", {}).verdict, CaseVerdict::kPass);
+  EXPECT_EQ(run("", eight).verdict, CaseVerdict::kPass);
+  EXPECT_EQ(run(" buffers=8", eight).verdict, CaseVerdict::kPass);
+  for (const CaseResult& other : {run(" buffers=8", {}), run(" buffers=4", eight)}) {
+    EXPECT_EQ(other.verdict, CaseVerdict::kSkip);
+    EXPECT_TRUE(other.not_built);
+    EXPECT_NE(other.reason.find("it is not built with buffers="), std::string::npos);
+  }
+}
+
 TEST_F(BrokenAdapters, RolesThatItDoesNotPlayAreSkipped) {
   const auto sink = attach(
       "while read -r line; do case $line in "

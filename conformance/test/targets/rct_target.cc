@@ -17,6 +17,7 @@ using machine::Link;
 using runner::TargetBroken;
 using runner::Unsupported;
 
+constexpr trace::ParameterId kBuffers = trace::ParameterId::kBuffers;
 constexpr std::size_t kOutputsAtOnceMax = 1000;  // At one instant.
 constexpr Ticks kClockSlackTicks = 50;
 constexpr Ticks kUntilTicksMax = 1U << 16;  // A minute.
@@ -84,7 +85,9 @@ trace::Statement asked_for(const machine::Config& config, const trace::Statement
     const std::int64_t value = events::value_of(config.profile, one.id);
     const std::int64_t* const stated = find(own, one.id);
     const bool as_it_is = value == (stated ? *stated : events::value_of(usual, one.id));
-    if (one.id != trace::ParameterId::kChannels && !as_it_is) out.push_back({one.id, value});
+    // `reset` always names the channels; of buffers a configuration says nothing.
+    if (one.id == trace::ParameterId::kChannels || one.id == kBuffers) continue;
+    if (!as_it_is) out.push_back({one.id, value});
   }
   return out;
 }
@@ -136,24 +139,35 @@ void RctTarget::start_node(machine::Role role, const std::string& command,
       fmt::format("it is not built with {}: `reset` takes whatever it is told", text));
 }
 
+// Buffers are not in the machine's configuration: what a case says of them goes past it.
 void RctTarget::start(const trace::Scope& scope, const trace::NodeHeader& node) {
-  if (trace::protocol().has_machine) return Target::start(scope, node);
-  std::string command = fmt::format("reset {}", trace::role_text(node.role));
-  if (node.id) command += fmt::format(" id={}", *node.id);
-  if (node.island) command += fmt::format(" island={}", *node.island);
-  command += fmt::format(" seed={}", scope.seed & 0xFFFF);
-  if (!scope.profile.empty()) command += " profile=" + scope.profile;
   trace::Statement wanted;
   for (const trace::Stated& one : node.stated) {
     const std::int64_t* const own = find(own_, one.id);
     if (one.value != (own ? *own : trace::parameter(one.id).unstated)) wanted.push_back(one);
   }
+  if (trace::protocol().has_machine) {
+    std::erase_if(wanted, [](const trace::Stated& one) { return one.id != kBuffers; });
+    buffers_ = std::move(wanted);
+    return Target::start(scope, node);
+  }
+  std::string command = fmt::format("reset {}", trace::role_text(node.role));
+  if (node.id) command += fmt::format(" id={}", *node.id);
+  if (node.island) command += fmt::format(" island={}", *node.island);
+  command += fmt::format(" seed={}", scope.seed & 0xFFFF);
+  if (!scope.profile.empty()) command += " profile=" + scope.profile;
   if (!wanted.empty()) command += ' ' + trace::statement_text(wanted);
   start_node(static_cast<machine::Role>(node.role), command, wanted);
 }
 
 void RctTarget::reset(const machine::Config& config) {
-  start_node(config.role, reset_command(config, own_), asked_for(config, own_));
+  std::string command = reset_command(config, own_);
+  trace::Statement wanted = asked_for(config, own_);
+  for (const trace::Stated& one : buffers_) {
+    command += ' ' + trace::statement_text({one});
+    wanted.push_back(one);
+  }
+  start_node(config.role, command, wanted);
 }
 
 void RctTarget::give(Ticks now, const machine::Event& event) {

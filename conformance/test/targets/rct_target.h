@@ -66,6 +66,7 @@ class RctTarget : public runner::Target {
 
   std::unique_ptr<RctClient> client_;
   trace::Statement own_;
+  trace::Statement buffers_;          ///< What the case asks for and `own_` does not say.
   std::optional<DelayWatch> delays_;  // In real time.
   GiveBack give_back_;
   RealClock clock_;  // Since reset; of what runs in real time.
