@@ -162,6 +162,10 @@ bool decode_as(const reflect::Type& type, const AmFrame& frame, Concrete& out) {
   if (decoded.error.fault != Fault::kNone || decoded.node_count() == 0) return false;
   out.name = type.name;
   out.message = Message::named(type.name);
+  if (type.min_size == type.max_size && bytes.size() > type.max_size) {
+    out.excess = bytes.size() - type.max_size;
+    out.size_rule = type.requirement;
+  }
   Flatten(decoded, out).run();
   decoded.clear({});
   return true;

@@ -68,6 +68,9 @@ struct Concrete {
   std::vector<Leaf> leaves;      ///< In their order.
   std::vector<Part> parts;       ///< Outer ones first.
   Message message;               ///< As a log shows it: addresses, lists and names.
+  /// Bytes after the content of a message that has one size only, and the rule that gives it.
+  std::size_t excess = 0;
+  ReqId size_rule = ReqId::kNone;
 
   /// Returns the leaf with this whole path, or null.
   const Leaf* leaf(std::string_view path) const;

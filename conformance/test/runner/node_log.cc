@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "codec/reflect/requirements.h"
 #include "conformance/generated/profiles.h"
 #include "conformance/test/runner/run_case.h"
 #include "conformance/trace/encode.h"
@@ -175,7 +176,7 @@ const Output* NodeLog::take(const trace::Line& line, const Window& window,
     if (seen.taken || !is_about(line, seen) || !window.holds(outputs[i].time)) continue;
     if (const auto next = next_.find(seen.link); next != next_.end() && i < next->second) continue;
     if (!trace::match(line, seen.message, bindings)) continue;
-    seen.taken = true;
+    seen.taken = &line;
     next_[seen.link] = i + 1;
     return &outputs[i];
   }
@@ -185,7 +186,7 @@ const Output* NodeLog::take(const trace::Line& line, const Window& window,
 void NodeLog::allow(const trace::Line& line, const Window& window,
                     const trace::Bindings& bindings) {
   if (const Output* output = forbidden(line, window, bindings)) {
-    seen_[static_cast<std::size_t>(output - target_->outputs().data())].taken = true;
+    seen_[static_cast<std::size_t>(output - target_->outputs().data())].taken = &line;
   }
 }
 
@@ -259,9 +260,44 @@ Evidence NodeLog::evidence_of(const Output& output) const {
           is_ack(message) ? "ack" : message.name, text_at("result"), again ? "again" : "new"};
 }
 
+std::vector<Overlong> NodeLog::overlong() const {
+  std::vector<Overlong> out;
+  for (std::size_t i = 0; i < seen_.size(); ++i) {
+    const trace::Concrete& message = seen_[i].message;
+    const bool known = std::ranges::any_of(
+        out, [&](const Overlong& one) { return one.rule == message.size_rule; });
+    if (message.size_rule == ReqId::kNone || known) continue;
+    out.push_back({&target_->outputs()[i], seen_[i].taken, message.size_rule, message.excess});
+  }
+  return out;
+}
+
 std::string NodeLog::text_of(const Output& output) const {
   const std::size_t index = static_cast<std::size_t>(&output - target_->outputs().data());
   return fmt::format("{} {}", seen_[index].link, trace::print(seen_[index].message.message));
+}
+
+void conclude(CaseResult& result, const std::vector<NodeLog>& nodes, trace::Place place) {
+  mark_implied(result.failures);
+  if (result.verdict > CaseVerdict::kFail) return;
+  for (const NodeLog& node : nodes) {
+    for (const Overlong& one : node.overlong()) {
+      const reflect::Requirement& rule = reflect::requirement(one.rule);
+      Failure failure;
+      failure.place = one.line ? one.line->place : place;
+      failure.requirements = {rule.id};
+      failure.weak = std::string_view(rule.level) == "SHOULD";
+      failure.time = failure.from = failure.to = failure.broken_at = one.output->time;
+      failure.text =
+          fmt::format("at {} it emitted {}, with {} byte{} after the content", failure.time,
+                      node.text_of(*one.output), one.excess, one.excess == 1 ? "" : "s");
+      failure.forbidden = true;
+      failure.node = node.name();
+      result.verdict =
+          std::max(result.verdict, failure.weak ? CaseVerdict::kWeak : CaseVerdict::kFail);
+      result.failures.push_back(std::move(failure));
+    }
+  }
 }
 
 }  // namespace rubric::runner

@@ -14,6 +14,8 @@
 
 namespace rubric::runner {
 
+struct CaseResult;
+
 struct LoggedLine {
   Ticks time = 0;
   trace::Line line;
@@ -25,6 +27,14 @@ struct NearestMiss {
   std::string text;
   Evidence evidence;
   std::optional<Ticks> time = {};  // When it came, if it came in the window and differs.
+};
+
+/// An output with bytes after the content of a message that has one size only.
+struct Overlong {
+  const Output* output = nullptr;
+  const trace::Line* line = nullptr;  // That took it, or null.
+  ReqId rule = ReqId::kNone;
+  std::size_t excess = 0;
 };
 
 class NodeLog {
@@ -53,6 +63,9 @@ class NodeLog {
   /// Explains why no output was taken, by those until `latest`.
   NearestMiss nearest_miss(const trace::Line& line, const Window& window, Ticks latest,
                            const trace::Bindings& bindings) const;
+  /// Returns the outputs that are longer than their message, the first of each rule that gives
+  /// its size.
+  std::vector<Overlong> overlong() const;
   std::string text_of(const Output& output) const;
   Evidence evidence_of(const Output& output) const;
 
@@ -62,8 +75,8 @@ class NodeLog {
   struct Seen {
     trace::Concrete message;
     std::string link;
-    bool foreign = false;  // `*` does not mean it.
-    bool taken = false;
+    bool foreign = false;                // `*` does not mean it.
+    const trace::Line* taken = nullptr;  // By this line, if by any.
   };
   /// Returns whether the line can be about this output: by its link, and as a message of the
   /// protocol where it says `*`.
@@ -79,5 +92,10 @@ class NodeLog {
   std::map<std::string, std::size_t> next_;  // By link: the output after the last taken one.
   std::vector<LoggedLine> log_;
 };
+
+/// Marks the failures that earlier ones imply, and adds those of outputs that are longer than their
+/// message: patterns compare fields and do not see what is behind them. These imply nothing, for
+/// the node is in no other state than the case assumes. `place` is for outputs that no line took.
+void conclude(CaseResult& result, const std::vector<NodeLog>& nodes, trace::Place place);
 
 }  // namespace rubric::runner

@@ -86,7 +86,7 @@ class Run {
     } catch (const std::exception& error) {
       set_error(result, place_, error.what());
     }
-    mark_implied(result.failures);
+    conclude(result, nodes_, case_.place);
     result.unseen = std::move(unseen_);
     result.length = now_;
     write_log(result);

@@ -234,8 +234,8 @@ TEST(RunCase, NobodyWaitsForAnHour) {
   EXPECT_TRUE(real.not_built);
 }
 
-// Sends a frame of this type at each of its times.
-template <std::uint8_t kType>
+// Sends a frame of this type and size at each of its times.
+template <std::uint8_t kType, std::size_t kSize = 4>
 class Sender : public Ticker {
  public:
   using Ticker::Ticker;
@@ -246,7 +246,7 @@ class Sender : public Ticker {
       Output& output = sent_.emplace_back(Ticker::outputs().back());
       output.is_frame = true;
       output.frame.type = kType;
-      output.frame.size_bytes = 4;
+      output.frame.size_bytes = kSize;
     }
     return reached;
   }
@@ -269,6 +269,24 @@ TEST(RunCase, FramesOfOtherTypesAreNobodysMessages) {
   EXPECT_EQ(run<Sender<kOwn>>("@0..90 m5 > rA *\n", {30}).verdict, CaseVerdict::kFail);
   EXPECT_EQ(run<Sender<kOwn>>("@0..90 m5 !> rA am(type=200 ...)\n", {30}).verdict,
             CaseVerdict::kFail);
+}
+
+// Fields are all as asked, and a net_msg may have stale bytes; a message of one size only may not.
+TEST(RunCase, BytesAfterAMessageOfOneSizeAreNoPartOfIt) {
+  constexpr std::uint8_t kJoin = 14;
+  using Right = Sender<kJoin, 6>;
+  using Longer = Sender<kJoin, 7>;
+  const char* const asked = "@0..90 m5 > rA join_request(*) [J1-REQUEST]\n";
+  EXPECT_EQ(run<Right>(asked, {30}).verdict, CaseVerdict::kPass);
+  for (const char* lines :
+       {asked, "@0..90 m5 !> app *\n", "@0..90 m5 ?> rA *\n@0..90 m5 !> rA *\n"}) {
+    const CaseResult result = run<Longer>(lines, {30});
+    EXPECT_EQ(result.verdict, CaseVerdict::kFail) << lines;
+    ASSERT_EQ(result.failures.size(), 1u) << lines;
+    EXPECT_EQ(result.failures[0].requirements, std::vector<std::string>{"WIRE-JOIN-REQUEST"});
+    EXPECT_FALSE(result.failures[0].implied);
+    EXPECT_EQ(result.failures[0].time, 30u);
+  }
 }
 
 TEST(RunCase, ARuleBrokenBeforeASkipStaysBroken) {

@@ -119,7 +119,11 @@ std::vector<RequirementSummary> by_requirement(const ImplementationRun& run) {
   for (const CaseRun& one : run.cases) {
     const Rules broken = rules_of(one, true);
     const Rules named = rules_of(one, false);
-    for (const ReqId id : one.requirements) {
+    // A frame's size is judged wherever it comes, though no line names its rule.
+    Rules all = broken;
+    all.insert(one.requirements.begin(), one.requirements.end());
+    for (const ReqId id : all) {
+      if (id == ReqId::kNone) continue;
       RequirementSummary& rule = rules[id];
       rule.requirement = id;
       ++rule.cases[one.result.verdict];
@@ -139,7 +143,11 @@ RuleTotals rule_totals(const ImplementationRun& run) {
     totals.all += !id.empty() && !id.starts_with("WIRE-");
   }
   for (const RequirementSummary& rule : by_requirement(run)) {
-    if (std::string_view(reflect::requirement(rule.requirement).id).starts_with("WIRE-")) continue;
+    if (std::string_view(reflect::requirement(rule.requirement).id).starts_with("WIRE-")) {
+      totals.all += rule.broken > 0;
+      totals.broken += rule.broken > 0;
+      continue;
+    }
     const auto cases = [&](CaseVerdict verdict) {
       const auto found = rule.cases.find(verdict);
       return found == rule.cases.end() ? 0 : found->second;

@@ -124,12 +124,12 @@ struct RequirementSummary {
   std::size_t broken = 0;     ///< Cases with a failure that blames this rule.
   std::size_t suspected = 0;  ///< Others in which a failed line names it, or an implied failure.
 };
-/// Returns every rule that a case of the run names, in the catalogue's order.
+/// Returns every rule that a case of the run names or shows broken, in the catalogue's order.
 std::vector<RequirementSummary> by_requirement(const ImplementationRun& run);
 
-/// Results of the rules of behaviour, those of the wire apart: each counts once.
+/// Results of the rules of behaviour, and of those of the wire that were broken: each counts once.
 struct RuleTotals {
-  std::size_t all = 0;   ///< In the catalogue.
+  std::size_t all = 0;   ///< In the catalogue, but for those of the wire that were not broken.
   std::size_t kept = 0;  ///< A case that names it passed, none broke it, and none makes it suspect.
   std::size_t broken = 0;
   std::size_t suspected = 0;  ///< No case broke it for sure, but what one broke may come from it.
