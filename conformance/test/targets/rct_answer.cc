@@ -28,6 +28,9 @@ std::string read_roles(std::string_view list, std::vector<machine::Role>& out) {
       return quoted(list.substr(0, size)) +
              " is not a role: " + trace::alternatives(trace::role_names());
     }
+    if (std::find(out.begin(), out.end(), *role) != out.end()) {
+      return "it says the role " + std::string(list.substr(0, size)) + " twice";
+    }
     out.push_back(*role);
     list.remove_prefix(std::min(size + 1, list.size()));
   }

@@ -194,6 +194,8 @@ TEST(RctAnswer, Hello) {
   EXPECT_EQ(hello_wrong_with("hello rct/1 a 2 roles=mote roles=sink"), "it says roles= twice");
   EXPECT_EQ(hello_wrong_with("hello rct/1 a 2 roles=mote time=real time=real"),
             "it says time= twice");
+  EXPECT_EQ(hello_wrong_with("hello rct/1 a 2 roles=mote,sink,mote"),
+            "it says the role mote twice");
   EXPECT_NE(hello_wrong_with("hello rct/1 a 2 roles=mote time=warped"), "");
   const std::string known =
       "roles, time, links, response, join_period, join_requests, ack_joins, ack_timeout, "
@@ -210,6 +212,12 @@ TEST(RctAnswer, Hello) {
             "expected channels from 1 to 8 channels, given '9'");
   EXPECT_EQ(hello_wrong_with("hello rct/1 a 2 roles=mote response=9 response=9"),
             "response is stated twice");
+  EXPECT_EQ(hello_wrong_with("hello rct/1 a 2 roles=mote response=600 ack_timeout=3000"),
+            "response=600 leaves no time for a reply within join_period=500: expected a "
+            "join_period of at least 620");
+  EXPECT_EQ(hello_wrong_with("hello rct/1 a 2 roles=mote response=481 ack_timeout=3000"),
+            "response=481 leaves no time for a reply within join_period=500: expected a "
+            "join_period of at least 501");
 }
 
 TEST(RctAnswer, RealTimeGoesOn) {

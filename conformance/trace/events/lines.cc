@@ -398,10 +398,18 @@ std::int64_t assumed(const machine::Profile& profile, ParameterId id) {
 std::string contradiction(const trace::Statement& statement) {
   if (!trace::protocol().has_machine) return {};
   constexpr std::int64_t kShortest = 150;  // From the latest ack to the timeout, in golden traces.
+  constexpr std::int64_t kReply = 20;      // From a request to its reply, in golden traces.
   machine::Profile profile;
   state(profile, statement);
   const std::int64_t timeout = assumed(profile, ParameterId::kAckTimeout);
   const std::int64_t response = value_of(profile, ParameterId::kResponse);
+  const std::int64_t period = value_of(profile, ParameterId::kJoinPeriod);
+  // Who states a short period alone is as prompt as that needs.
+  if (trace::find(statement, ParameterId::kResponse) && period < response + kReply) {
+    return "response=" + std::to_string(response) +
+           " leaves no time for a reply within join_period=" + std::to_string(period) +
+           ": expected a join_period of at least " + std::to_string(response + kReply);
+  }
   if (timeout >= response + kShortest) return {};
   return "ack_timeout=" + std::to_string(timeout) +
          " leaves no time for an ack, which may take response=" + std::to_string(response) +
