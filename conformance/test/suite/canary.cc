@@ -6,6 +6,7 @@
 
 #include "conformance/test/runner/run_case.h"
 #include "conformance/test/suite/cases.h"
+#include "conformance/test/targets/rct_text.h"
 #include "conformance/trace/protocol.h"
 
 namespace rubric::suite {
@@ -53,6 +54,11 @@ std::string try_canary(const SuiteCase& one, targets::Attachment& attachment) {
   using runner::CaseVerdict;
   const runner::CaseResult result = runner::run_case(
       one.file->file, *one.one, [&](const trace::NodeHeader&) { return attachment.target(); });
+  for (const runner::Failure& failure : result.failures) {
+    if (!failure.crash || !failure.text.starts_with("unsupported `until")) continue;
+    return fmt::format("it does not speak rct/{}, where time passes for all nodes: {}",
+                       targets::kRctVersion, failure.text);
+  }
   switch (result.verdict) {
     case CaseVerdict::kPass:
     case CaseVerdict::kWeak:

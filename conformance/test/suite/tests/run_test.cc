@@ -115,6 +115,26 @@ TEST(Honesty, AnAnswerToAnUnknownCommandEndsTheRun) {
   EXPECT_THAT(run.dishonest, HasSubstr("an unknown command: it said done"));
 }
 
+// Starts, and lets no time pass.
+class Timeless : public testing::Parrot {
+ public:
+  using Parrot::Parrot;
+  runner::Ticks run_until(runner::Ticks) override {
+    throw runner::TargetBroken("unsupported `until 0`: everything");
+  }
+};
+
+TEST(Honesty, WhoLetsNoTimePassSpeaksNoRct) {
+  const ImplementationRun run = suite::run(
+      "x", fake([](FakeAttachment& one) {
+        one.make = [] { return std::make_unique<Timeless>(std::vector<runner::Output>{}); };
+      }),
+      plan());
+  EXPECT_THAT(run.dishonest, HasSubstr("it does not speak rct/1"));
+  EXPECT_THAT(run.dishonest, HasSubstr("unsupported `until 0`: everything"));
+  EXPECT_TRUE(run.cases.empty());
+}
+
 TEST(Honesty, CanBeRequired) {
   FakeAttachment honest;
   require_honest(honest, "./a");
