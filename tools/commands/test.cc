@@ -358,13 +358,17 @@ void add_selection(cli::Command& command, TestOptions& options) {
   command.add_option(
       "TRACES", options.traces,
       "Golden traces, .rtr files or folders of them (default: those that were built in)");
-  command.add_option("--cases", options.selection.globs, "Run only cases with such names: 'j4.*'")
+  command
+      .add_option("--cases", options.selection.globs,
+                  "Run only cases with such names: 'j4.*'; repeat for others")
       .check(cli::given);
-  command.add_option("--except", options.selection.excepted, "Leave out the cases with such names")
+  command
+      .add_option("--except", options.selection.excepted,
+                  "Leave out the cases with such names; repeat for others")
       .check(cli::given);
   command
       .add_option("--rule", options.selection.requirements,
-                  "Run only cases that try this rule or family: J4-SEQ, J4, J")
+                  "Run only cases that try this rule or family: J4-SEQ, J4, J; repeat for others")
       .check(cli::given);
   command.add_option("--role", options.role, "Run only cases with a node of this role under test")
       .check(cli::given, "TEXT:{mote,sink,base_station}");
@@ -441,7 +445,7 @@ void add_options(cli::Command& command, TestOptions& options) {
       .between(cli::kColumnsMin, std::size_t{1000});
   cli::add_color_option(command, options.color);
   for (const char* name : {"--target", "--cases", "--except", "--rule"}) {
-    command.get_option(name).one_at_a_time();  // One at a time.
+    command.get_option(name).repeatable();  // Traces may follow.
   }
 }
 
