@@ -2,6 +2,7 @@
 
 #include <cassert>
 
+#include "conformance/generated/profiles.h"
 #include "conformance/machine/ticks.h"
 #include "conformance/trace/events/lines.h"
 

@@ -4,8 +4,12 @@
 #include <cstdint>
 
 #include "conformance/check/observation.h"
-#include "conformance/generated/profiles.h"
+#include "conformance/machine/profile.h"
 #include "conformance/trace/parameters.h"
+
+namespace rubric::machine {
+struct NamedProfile;  // Each new rule with an entry changes generated/profiles.h.
+}
 
 namespace rubric::check {
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "conformance/check/terms.h"
+#include "conformance/generated/profiles.h"
 
 namespace rubric::check {
 Findings::Findings(bool deployed, const std::vector<ClockStep>& steps,

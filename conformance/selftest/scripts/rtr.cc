@@ -72,17 +72,16 @@ class Keeper : public runner::Target {
   Recorder target_;
 };
 
-// Returns whether it sends more bytes at once, or lasts longer, than any script.
+// Returns whether it sends more bytes at once, lasts longer, or has more steps, than any script.
 bool is_beyond(const Script& script) {
-  return script.length() > kLengthMax ||
+  return script.length() > kLengthMax || script.steps.size() > kStepsMax ||
          std::any_of(script.steps.begin(), script.steps.end(),
                      [](const Step& step) { return step.bytes.size() > kSendBytesMax; });
 }
 
 bool fits(const Script& script) {
   const auto whole = [](const Step& step) { return fitting_delay(step.delay) == step.delay; };
-  return script.steps.size() <= kStepsMax &&
-         std::all_of(script.steps.begin(), script.steps.end(), whole);
+  return std::all_of(script.steps.begin(), script.steps.end(), whole);
 }
 
 }  // namespace

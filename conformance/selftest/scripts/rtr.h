@@ -19,9 +19,9 @@ struct CaseScript {
 };
 
 /// Returns a script for each node under test: the runner's inputs to it when all of them are the
-/// reference machine; none for a node that is given more bytes at once, or for longer, than a
-/// script can. Throws std::runtime_error if the case cannot be run, or exceeds a script's other
-/// bounds.
+/// reference machine; none for a node that is given more bytes at once, more often, or for longer,
+/// than a script can. Throws std::runtime_error if the case cannot be run, or exceeds a script's
+/// other bounds.
 std::vector<CaseScript> scripts_of(const trace::File& file, const trace::Case& one);
 
 /// Titles in the trace.
