@@ -17,6 +17,13 @@ bool is_nobodys(const Net& net) {
   return unknown(net.trans_id) || unknown(net.app_id);
 }
 
+// Returns whether a message to the node is to be acked. If somebody sent it in the node's own name,
+// the ack would go to the node itself, and is not owed (decision 131).
+bool wants_ack(const Net& net) {
+  return net.src != net.dest &&
+         machine::must_ack(net.reliable == 1, net.dest, net.trans_id, net.app_id);
+}
+
 }  // namespace
 
 Acks::Acks(Context& context, std::size_t devices)
@@ -32,12 +39,6 @@ void Acks::begin_life(std::uint16_t node, std::int64_t since_us) {
   for (std::size_t i = 0; i < ring.size(); ++i) ring.newest(i).sure = false;
   owed_[node] = 0;
   orders_[node] = {};
-}
-
-// An ack that would go to the node itself, in whose name somebody sent, is not owed (decision 131).
-static bool wants_ack(const Net& net) {
-  return net.src != net.dest &&
-         machine::must_ack(net.reliable == 1, net.dest, net.trans_id, net.app_id);
 }
 
 void Acks::arrived(std::uint16_t node, const Observation& seen, std::uint16_t sender,

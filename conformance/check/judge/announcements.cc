@@ -125,10 +125,11 @@ void Announcements::announce(SinkWatch& sink, const Place& at, machine::Address 
   }
   joins_.keep(sink, watch, next_, at);
   const std::size_t members = joins_.listed(sink);
-  if (members > context_.profile(sink.device).members_max) {
+  const std::uint8_t members_max = context_.profile(sink.device).members_max;
+  if (members > members_max) {
     context_.report("J3-FULL"_rule, Severity::kWeak, at, sink.device,
                     {"Member " + number(members) + " of the sink is announced.",
-                     "At most " + number(context_.profile(sink.device).members_max) + " members.",
+                     "At most " + number(members_max) + " members.",
                      {}});
   }
 }

@@ -46,7 +46,7 @@ void Forwarding::heard_on_serial(std::uint16_t sink, std::uint16_t base, const O
   passing.owes = onward && net.sound && net.reliable <= 1 && !line->deaf &&
                  net.dest.pid != machine::kBroadcastPid;
   passing.owed = passing.owes && !down.off && (down.sure || !context_.device(sink).hearing);
-  store(line->down, passing, line->owed_down, line->forgotten_down);
+  store(line->down, passing);
   // A capture does not show whether the base station wrote it; from PEIS come other islands' only.
   const bool own_island = net.src.pid == line->island && net.src.devid != machine::kNullDevid;
   if (own_island && net.sound && !context_.device(base).hearing && !holds(line->up, net, false)) {
@@ -139,7 +139,7 @@ bool Forwarding::sent_on_radio(std::uint16_t sink, const Observation& seen, cons
     if (near == nullptr || same_payload(passing.net, net)) near = &passing;
     if (passing.passed >= passing.copies || !same_payload(passing.net, net)) continue;
     ++passing.passed;
-    if (passing.owed) --line->owed_down;
+    if (passing.owed) --line->down.owed;
     passing.owed = false;
     pass_down(*line, passing, seen, net);
     return true;
@@ -148,8 +148,8 @@ bool Forwarding::sent_on_radio(std::uint16_t sink, const Observation& seen, cons
   const bool plain = net.src.pid == net.dest.pid && net.src.pid != line->island &&
                      !line->changing(seen.place.time_us);
   if ((!plain && may_be_anothers(*line, net)) || relayed(*line, seen, net)) return true;
-  if (line->forgotten_down > 0) {
-    --line->forgotten_down;
+  if (line->down.forgotten > 0) {
+    --line->down.forgotten;
     return true;
   }
   if (near != nullptr) {
@@ -220,13 +220,13 @@ void Forwarding::overdue(std::uint16_t sink, std::int64_t now_us) {
   Line* const line = find(sink);
   if (line == nullptr) return;
   if (line->early.size() > 0) expire_early(*line, now_us);  // It may be what is missing.
-  if (line->owed_up > 0) overdue_up(*line, now_us);
-  if (line->owed_down > 0) overdue_down(*line, now_us);
+  if (line->up.owed > 0) overdue_up(*line, now_us);
+  if (line->down.owed > 0) overdue_down(*line, now_us);
 }
 
 void Forwarding::showed_life(std::uint16_t sink, std::int64_t now_us) {
   Line* const line = find(sink);
-  if (line != nullptr && line->owed_down > 0) overdue_down(*line, now_us);
+  if (line != nullptr && line->down.owed > 0) overdue_down(*line, now_us);
 }
 
 // Returns whether a message was made of one that came: it has its source and number, or, while that
@@ -265,7 +265,7 @@ bool Forwarding::may_be_anothers(const Line& line, const Net& net) {
       Passing& passing = other.down.newest(i);
       if (passing.passed >= passing.copies || !same_message(passing.net, net)) continue;
       ++passing.passed;
-      if (passing.owed) --other.owed_down;
+      if (passing.owed) --other.down.owed;
       passing.owed = false;
       return true;
     }
@@ -305,7 +305,7 @@ void Forwarding::refuse_down(Line& line, const Observation& seen, const Net& net
   said.expected = "Addresses, reliable, number, nbytes and payload as they came.";
   context_.report("N7-CONTENT"_rule, context_.on_line(line.sink, Severity::kFail), seen.place,
                   line.sink, std::move(said));
-  if (best->owed) --line.owed_down;
+  if (best->owed) --line.down.owed;
   best->owed = false;
   if (best->passed < 255) ++best->passed;
 }
@@ -317,7 +317,7 @@ void Forwarding::overdue_down(Line& line, std::int64_t now_us) {
     const std::int64_t due_us = context_.due_us(line.sink, passing.whole_us, Link::kRadio);
     if (!passing.owed || now_us <= due_us) continue;
     passing.owed = false;
-    --line.owed_down;
+    --line.down.owed;
     const bool elsewhere = std::ranges::any_of(lines_, [&](const Line& other) {
       return &other != &line && holds(other.down, passing.net, false);  // It may have radiated it.
     });
@@ -342,8 +342,8 @@ void Forwarding::finish(std::int64_t end_us) {
   for (Line& line : lines_) {
     // At its end a log of what the sink was given needs no sign of life.
     expire_early(line, end_us + context_.options.skew_us + 1);
-    if (context_.device(line.sink).hearing && line.owed_up > 0) overdue_up(line, end_us);
-    if (context_.device(line.sink).hearing && line.owed_down > 0) overdue_down(line, end_us);
+    if (context_.device(line.sink).hearing && line.up.owed > 0) overdue_up(line, end_us);
+    if (context_.device(line.sink).hearing && line.down.owed > 0) overdue_down(line, end_us);
     forwards_nothing(line);
     note_stale(context_, line.sink, "N6-CONTENT"_rule, line.stale,
                "On the serial line nbytes says ");

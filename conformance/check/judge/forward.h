@@ -94,6 +94,12 @@ class Forwarding {
   static constexpr std::size_t kEarlyRoom = 16;
   static constexpr std::size_t kTwinsLook = 64;
 
+  /// What passes a sink in one direction.
+  struct Way : Ring<Passing, kRoom> {
+    std::uint32_t owed = 0;       ///< So many of these.
+    std::uint32_t forgotten = 0;  ///< Owed ones that were pushed out, and may still be passed on.
+  };
+
   struct Line {
     std::uint16_t sink = kNobody;
     std::uint16_t am = 0;
@@ -107,8 +113,8 @@ class Forwarding {
     bool off = false;                 // Its serial line, by its application.
     bool deaf = false;                // Its radio, by its application.
     bool serial = false;              ///< Its line is captured.
-    Ring<Passing, kRoom> up;          ///< From the radio.
-    Ring<Passing, kRoom> down;        ///< From serial.
+    Way up;                           ///< From the radio.
+    Way down;                         ///< From serial.
     Ring<Passing, kEarlyRoom> early;  ///< On serial before the radio stamp, by skew of the taps.
     std::uint64_t order = 0;
     /// The latest that was passed on.
@@ -120,21 +126,15 @@ class Forwarding {
     Last last_down;
     std::uint32_t heard = 0;      ///< Messages for its base station that it may have received.
     std::uint32_t forwarded = 0;  ///< Messages that it passed on to its base station.
-    std::uint32_t owed_up = 0;
-    std::uint32_t owed_down = 0;
-    // So many of those may still be passed on, but were pushed out of their rings.
-    std::uint32_t forgotten_up = 0;
-    std::uint32_t forgotten_down = 0;
-    Stale stale;  ///< On its serial line.
+    Stale stale;                  ///< On its serial line.
   };
 
   void forwards_nothing(const Line& line);
   Line* find(std::uint16_t sink);
-  void store(Ring<Passing, kRoom>& ring, const Passing& passing, std::uint32_t& owed,
-             std::uint32_t& forgotten);
+  static void store(Way& way, const Passing& passing);
   /// Returns whether the message is among these, `waiting`: not yet passed on.
-  static bool holds(const Ring<Passing, kRoom>& ring, const Net& net, bool waiting);
-  static void forget_owed(Ring<Passing, kRoom>& ring, std::uint32_t& owed);
+  static bool holds(const Way& way, const Net& net, bool waiting);
+  static void forget_owed(Way& way);
   void pass_up(Line& line, Passing& passing, const Observation& seen);
   void pass_down(Line& line, Passing& passing, const Observation& seen, const Net& net);
   void refuse_up(Line& line, const Observation& seen, const Net& net);

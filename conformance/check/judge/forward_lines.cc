@@ -30,9 +30,9 @@ bool Forwarding::Line::changing(std::int64_t time_us) const {
   return std::abs(time_us - island_changed_us) < slack_us;
 }
 
-bool Forwarding::holds(const Ring<Passing, kRoom>& ring, const Net& net, bool waiting) {
-  for (std::size_t i = 0; i < ring.size(); ++i) {
-    const Passing& passing = ring.newest(i);
+bool Forwarding::holds(const Way& way, const Net& net, bool waiting) {
+  for (std::size_t i = 0; i < way.size(); ++i) {
+    const Passing& passing = way.newest(i);
     const bool wanted = !waiting || passing.passed < passing.copies;
     if (wanted && same_message(passing.net, net)) return true;
   }
@@ -49,8 +49,8 @@ void Forwarding::set_island(std::uint16_t sink, std::uint16_t island, std::int64
   Line* const line = find(sink);
   if (line == nullptr || line->island == island) return;
   // It may pass on as the sink of either island what still waits.
-  forget_owed(line->up, line->owed_up);
-  forget_owed(line->down, line->owed_down);
+  forget_owed(line->up);
+  forget_owed(line->down);
   line->island_changed_us = now_us;
   line->island_sure = sure;
   line->last_island = line->island;
@@ -63,9 +63,9 @@ void Forwarding::begin_life(std::uint16_t sink, std::int64_t since_us) {
   const auto later = [&](const Passing& one) { return one.place.time_us >= since_us; };
   line->up.keep_newest(later);
   line->down.keep_newest(later);
-  forget_owed(line->up, line->owed_up);
-  forget_owed(line->down, line->owed_down);
-  line->forgotten_up = line->forgotten_down = 0;
+  forget_owed(line->up);
+  forget_owed(line->down);
+  line->up.forgotten = line->down.forgotten = 0;
   line->off = line->deaf = false;
   if (context_.device(sink).hearing) line->island = context_.device(sink).island;
 }
@@ -74,31 +74,30 @@ void Forwarding::serial_set(std::uint16_t sink, bool on) {
   Line* const line = find(sink);
   if (line == nullptr) return;
   line->off = !on;
-  if (!on) forget_owed(line->up, line->owed_up);
+  if (!on) forget_owed(line->up);
 }
 
-void Forwarding::forget_owed(Ring<Passing, kRoom>& ring, std::uint32_t& owed) {
-  for (std::size_t i = 0; i < ring.size(); ++i) ring.newest(i).owed = false;
-  owed = 0;
+void Forwarding::forget_owed(Way& way) {
+  for (std::size_t i = 0; i < way.size(); ++i) way.newest(i).owed = false;
+  way.owed = 0;
 }
 
 void Forwarding::radio_set(std::uint16_t sink, bool on) {
   Line* const line = find(sink);
   if (line == nullptr) return;
   line->deaf = !on;
-  if (!on) forget_owed(line->down, line->owed_down);
+  if (!on) forget_owed(line->down);
 }
 
-void Forwarding::store(Ring<Passing, kRoom>& ring, const Passing& passing, std::uint32_t& owed,
-                       std::uint32_t& forgotten) {
-  if (ring.full() && ring.oldest(0).owed) {
-    --owed;
-    ++forgotten;
+void Forwarding::store(Way& way, const Passing& passing) {
+  if (way.full() && way.oldest(0).owed) {
+    --way.owed;
+    ++way.forgotten;
   }
-  Passing& stored = ring.push(passing);
-  if (passing.owed) ++owed;
-  for (std::size_t i = 1; i < std::min(ring.size(), kTwinsLook); ++i) {
-    Passing& other = ring.newest(i);
+  Passing& stored = way.push(passing);
+  if (passing.owed) ++way.owed;
+  for (std::size_t i = 1; i < std::min(way.size(), kTwinsLook); ++i) {
+    Passing& other = way.newest(i);
     if (!same_message(other.net, stored.net)) continue;
     other.twin = stored.twin = true;
     return;
@@ -108,9 +107,9 @@ void Forwarding::store(Ring<Passing, kRoom>& ring, const Passing& passing, std::
 void Forwarding::repeated(const Net& net, std::uint16_t sink) {
   for (Line& line : lines_) {
     if (sink != kNobody && line.sink != sink) continue;
-    Ring<Passing, kRoom>& ring = sink == kNobody ? line.up : line.down;
-    for (std::size_t i = 0; i < std::min(ring.size(), kTwinsLook); ++i) {
-      Passing& passing = ring.newest(i);
+    Way& way = sink == kNobody ? line.up : line.down;
+    for (std::size_t i = 0; i < std::min(way.size(), kTwinsLook); ++i) {
+      Passing& passing = way.newest(i);
       if (!same_message(passing.net, net)) continue;
       if (passing.copies < 255) ++passing.copies;
       passing.twin = true;
@@ -129,7 +128,7 @@ void Forwarding::surely_down(std::uint16_t sink, const Net& net, std::int64_t no
     passing.whole_us = std::max(passing.whole_us, now_us);
     if (passing.owes && !passing.owed && passing.passed == 0) {
       passing.owed = true;
-      ++line->owed_down;
+      ++line->down.owed;
     }
     return;
   }
@@ -141,7 +140,7 @@ void Forwarding::somebody_sent(const Net& net) {
     for (std::size_t i = 0; i < line.down.size(); ++i) {
       Passing& passing = line.down.newest(i);
       if (!same_message(passing.net, net)) continue;
-      if (passing.owed) --line.owed_down;
+      if (passing.owed) --line.down.owed;
       passing.owed = false;
       if (passing.copies < 255) ++passing.copies;  // It may have been another's.
       break;

@@ -68,7 +68,7 @@ void Forwarding::heard_on_radio(const Observation& seen, std::uint16_t sender, c
       if (context_.device(line.sink).whole) unheard(line, before);
       break;
     }
-    store(line.up, passing, line.owed_up, line.forgotten_up);
+    store(line.up, passing);
     if (early && passing.forbidden != ReqId::kNone) pass_up(line, line.up.newest(0), seen);
   }
 }
@@ -122,7 +122,7 @@ void Forwarding::sent_on_serial(std::uint16_t sink, const Observation& seen, con
       continue;
     }
     ++passing.passed;
-    if (passing.owed) --line->owed_up;
+    if (passing.owed) --line->up.owed;
     passing.owed = false;
     if (!net.sound && passing.net.sound) {
       report_nbytes(context_, line->sink, seen.place, net);
@@ -130,15 +130,15 @@ void Forwarding::sent_on_serial(std::uint16_t sink, const Observation& seen, con
       line->stale.add(seen.place, passing.net.nbytes, net.nbytes);
     }
     pass_up(*line, passing, seen);
-    if (line->owed_up > 0) overdue_up(*line, now);
+    if (line->up.owed > 0) overdue_up(*line, now);
     return;
   }
-  if (line->forgotten_up > 0) {
-    --line->forgotten_up;
+  if (line->up.forgotten > 0) {
+    --line->up.forgotten;
   } else {
     refuse_up(*line, seen, net);
   }
-  if (line->owed_up > 0) overdue_up(*line, now);
+  if (line->up.owed > 0) overdue_up(*line, now);
 }
 
 void Forwarding::refuse_up(Line& line, const Observation& seen, const Net& net) {
@@ -178,7 +178,7 @@ void Forwarding::refuse_up(Line& line, const Observation& seen, const Net& net) 
             : Severity::kFail,
         seen.place, line.sink, std::move(said));
     passing.passed = std::max<std::uint8_t>(passing.passed, 1);
-    if (passing.owed) --line.owed_up;
+    if (passing.owed) --line.up.owed;
     passing.owed = false;
     return;
   }
@@ -215,7 +215,7 @@ void Forwarding::unheard(Line& line, const Passing& early) {
   const bool complete = context_.options.sniffer_complete && began;
   const Severity severity = complete ? Severity::kFail : Severity::kInconclusive;
   if (meant != nullptr && complete) {
-    if (meant->owed) --line.owed_up;
+    if (meant->owed) --line.up.owed;
     meant->owed = false;
     meant->passed = 1;
     context_.report("N6-CONTENT"_rule, severity, early.place, line.sink,
@@ -248,7 +248,7 @@ bool Forwarding::alters_up(std::uint16_t sink, const Net& net) {
 
 void Forwarding::went_up(std::uint16_t sink, std::int64_t now_us) {
   Line* const line = find(sink);
-  if (line != nullptr && line->owed_up > 0) overdue_up(*line, now_us);
+  if (line != nullptr && line->up.owed > 0) overdue_up(*line, now_us);
 }
 
 bool Forwarding::came_up(std::uint16_t sink, const Net& net) {
@@ -264,7 +264,7 @@ void Forwarding::overdue_up(Line& line, std::int64_t now_us) {
     const std::int64_t due_us = context_.due_us(line.sink, passing.whole_us, Link::kSerial);
     if (!passing.owed || now_us <= due_us) continue;
     passing.owed = false;
-    --line.owed_up;
+    --line.up.owed;
     const bool own_island = passing.net.dest.pid == line.island;
     context_.report(
         own_island ? "N6-FORWARD"_rule : "N6-ROUTE"_rule,

@@ -430,9 +430,8 @@ void Judge::own_message(std::uint16_t node, const Observation& seen, const Net& 
                         machine::Link link, machine::Address own) {
   interfaces_.own_message(node, seen, net.seq_num);
   originals_.sent(node, seen, net, link, own);
-  if (net.is_ack())
-    acks_.sent(node, seen, net,
-               ack_timeout_us(net.dest));  // Late, it is not missing (decision 125).
+  // Late, an ack is not missing (decision 125).
+  if (net.is_ack()) acks_.sent(node, seen, net, ack_timeout_us(net.dest));
   acks_.showed_life(node, seen.place.time_us);
   if (net.sound && net.trans_id == component::kSynChannel) synaptic_.sent(node, seen, net);
 }

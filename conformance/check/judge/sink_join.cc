@@ -390,7 +390,7 @@ void SinkJoins::reply(std::uint16_t sink_device, const Observation& seen, const 
     context_.findings.kept("J3-SEQ"_rule);
     context_.findings.kept("J3-ONCE"_rule);
     context_.findings.kept("J3-DEST"_rule);
-    // What was granted while there was room may wait for the air until there is none.
+    // A reply that was granted while there was room may wait for the air until the list is full.
     const std::size_t members =
         listed(*sink, watch.asked ? watch.request.time_us : seen.place.time_us);
     const bool new_mote =
