@@ -1,10 +1,15 @@
 #include "conformance/test/runner/blame.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <span>
 #include <string_view>
+#include <utility>
 
+#include "codec/reflect/requirements.h"
 #include "conformance/generated/blame.h"
+#include "conformance/test/runner/node_log.h"
 
 namespace rubric::runner {
 namespace {
@@ -72,6 +77,29 @@ void mark_implied(std::vector<Failure>& failures) {
   for (Failure& failure : failures) {
     failure.implied = failed.contains(failure.node);
     if (!failure.weak) failed.insert(failure.node);
+  }
+}
+
+void conclude(CaseResult& result, const std::vector<NodeLog>& nodes, trace::Place place) {
+  mark_implied(result.failures);
+  if (result.verdict > CaseVerdict::kFail) return;
+  for (const NodeLog& node : nodes) {
+    for (const Overlong& one : node.overlong()) {
+      const reflect::Requirement& rule = reflect::requirement(one.rule);
+      Failure failure;
+      failure.place = one.line ? one.line->place : place;
+      failure.requirements = {rule.id};
+      failure.weak = std::string_view(rule.level) == "SHOULD";
+      failure.time = failure.from = failure.to = failure.broken_at = one.output->time;
+      failure.text =
+          fmt::format("at {} it emitted {}, with {} byte{} after the content", failure.time,
+                      node.text_of(*one.output), one.excess, one.excess == 1 ? "" : "s");
+      failure.forbidden = true;
+      failure.node = node.name();
+      result.verdict =
+          std::max(result.verdict, failure.weak ? CaseVerdict::kWeak : CaseVerdict::kFail);
+      result.failures.push_back(std::move(failure));
+    }
   }
 }
 

@@ -17,6 +17,8 @@
 
 namespace rubric::runner {
 
+class NodeLog;
+
 /// Words for what was seen.
 /// - A forbidden output: its link ("radio", "serial", "peis", "app"), its message ("ack" for a
 ///   net_msg that acks), its result ("success", "fail"), and whether the node emitted it before
@@ -34,5 +36,10 @@ void blame_one(Failure& failure, const Evidence& evidence);
 /// Marks the failures of each node that its first one implies. Failures are in the order in which
 /// the lines were broken.
 void mark_implied(std::vector<Failure>& failures);
+
+/// Marks implied failures, and adds one for outputs that are longer than their message: patterns
+/// compare fields and do not see what is behind them. Such a failure implies no other, since the
+/// node is in the state that the case assumes. `place` is that of outputs which no line took.
+void conclude(CaseResult& result, const std::vector<NodeLog>& nodes, trace::Place place);
 
 }  // namespace rubric::runner

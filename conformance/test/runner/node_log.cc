@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "codec/reflect/requirements.h"
 #include "conformance/generated/profiles.h"
 #include "conformance/test/runner/run_case.h"
 #include "conformance/trace/encode.h"
@@ -275,29 +274,6 @@ std::vector<Overlong> NodeLog::overlong() const {
 std::string NodeLog::text_of(const Output& output) const {
   const std::size_t index = static_cast<std::size_t>(&output - target_->outputs().data());
   return fmt::format("{} {}", seen_[index].link, trace::print(seen_[index].message.message));
-}
-
-void conclude(CaseResult& result, const std::vector<NodeLog>& nodes, trace::Place place) {
-  mark_implied(result.failures);
-  if (result.verdict > CaseVerdict::kFail) return;
-  for (const NodeLog& node : nodes) {
-    for (const Overlong& one : node.overlong()) {
-      const reflect::Requirement& rule = reflect::requirement(one.rule);
-      Failure failure;
-      failure.place = one.line ? one.line->place : place;
-      failure.requirements = {rule.id};
-      failure.weak = std::string_view(rule.level) == "SHOULD";
-      failure.time = failure.from = failure.to = failure.broken_at = one.output->time;
-      failure.text =
-          fmt::format("at {} it emitted {}, with {} byte{} after the content", failure.time,
-                      node.text_of(*one.output), one.excess, one.excess == 1 ? "" : "s");
-      failure.forbidden = true;
-      failure.node = node.name();
-      result.verdict =
-          std::max(result.verdict, failure.weak ? CaseVerdict::kWeak : CaseVerdict::kFail);
-      result.failures.push_back(std::move(failure));
-    }
-  }
 }
 
 }  // namespace rubric::runner

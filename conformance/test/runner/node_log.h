@@ -14,8 +14,6 @@
 
 namespace rubric::runner {
 
-struct CaseResult;
-
 struct LoggedLine {
   Ticks time = 0;
   trace::Line line;
@@ -92,10 +90,5 @@ class NodeLog {
   std::map<std::string, std::size_t> next_;  // By link: the output after the last taken one.
   std::vector<LoggedLine> log_;
 };
-
-/// Marks the failures that earlier ones imply, and adds those of outputs that are longer than their
-/// message: patterns compare fields and do not see what is behind them. These imply nothing, for
-/// the node is in no other state than the case assumes. `place` is for outputs that no line took.
-void conclude(CaseResult& result, const std::vector<NodeLog>& nodes, trace::Place place);
 
 }  // namespace rubric::runner
