@@ -182,6 +182,13 @@ int run_station(const RunOptions& options) {
   return finish(*events, keeper);
 }
 
+// Refuses options that are for a broker where there is no space.
+void check_broker(const RunOptions& options, const std::string& space) {
+  for (const char* option : {"--home-assistant", "--credentials"}) {
+    if (space.empty() && options.is_given(option)) throw cli::UsageError(option, kNoBroker);
+  }
+}
+
 int run_file(const RunOptions& options) {
   std::string text;
   std::string error;
@@ -193,9 +200,7 @@ int run_file(const RunOptions& options) {
   if (!options.space.empty()) ecology.space = options.space;
   if (options.seed) ecology.seed = *options.seed;
   ecology.gone_after_s = options.gone_after_s;
-  for (const char* option : {"--home-assistant", "--credentials"}) {
-    if (ecology.space.empty() && options.is_given(option)) throw cli::UsageError(option, kNoBroker);
-  }
+  check_broker(options, ecology.space);
   ecology.home_assistant = options.home_assistant;
   run::Keeper keeper;
   open_files(options, run::nodes_of(ecology), ecology.seed, keeper);
@@ -227,7 +232,7 @@ enum Kind : unsigned { kMote = 1, kSink = 2, kBaseStation = 4, kProxy = 8, kFile
 constexpr struct {
   const char* option;
   unsigned kinds;
-  const char* in_file;  // What of a file has the same as a key; null: nothing has.
+  const char* in_file;  // The part of a file that has a key of this name; null: none has.
 } kUses[] = {
     {"--id", kMote | kSink, "mote"},
     {"--island", kSink | kBaseStation | kProxy, "island"},
@@ -284,9 +289,7 @@ void check_run(const RunOptions& options) {
     throw cli::UsageError(option,
                           "is for a mote that joins by itself; with --app - its call says it");
   }
-  for (const char* option : {"--home-assistant", "--credentials"}) {
-    if (options.space.empty() && options.is_given(option)) throw cli::UsageError(option, kNoBroker);
-  }
+  check_broker(options, options.space);
   check_names(options);
 }
 

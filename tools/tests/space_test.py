@@ -420,14 +420,20 @@ islands:
         self.assertIn(f"{wrong}:2: expected user=, password=", err)
         self.assertNotIn("sesame", err)
 
-    def test_tls(self):
+    def tls_broker(self, asks=False):
+        """Makes the broker one with TLS. The file of credentials, written, and its lines but for
+        that of the authority."""
         certificates(self.folder)
         self.broker.stop()
-        self.broker = Broker(self, self.broker.port, self.folder)
-        subscriber = Subscriber(self, self.broker)
-        users = self.folder / "gate"
+        self.broker = Broker(self, self.broker.port, self.folder, asks)
         secret = f"user={USER['RUBRIC_MQTT_USER']}\npassword={USER['RUBRIC_MQTT_PASSWORD']}\n"
+        users = self.folder / "gate"
         users.write_text(secret + f"ca={self.folder}/ca.crt\n", encoding="utf-8")
+        return users, secret
+
+    def test_tls(self):
+        users, secret = self.tls_broker()
+        subscriber = Subscriber(self, self.broker)
         base, air = self.island(11, "--credentials", users)
         self.mote(5, air)
         subscriber.until(lambda topic, _: topic == "rubicon/11/motes/5/state", "state")
@@ -457,13 +463,7 @@ islands:
         self.assertNotIn("connected", plain.waits_for(rb"mqtt://\S+: (.*)\n"))
 
     def test_tls_and_the_broker_goes_and_comes(self):
-        certificates(self.folder)
-        self.broker.stop()
-        self.broker = Broker(self, self.broker.port, self.folder)
-        users = self.folder / "gate"
-        users.write_text(f"user={USER['RUBRIC_MQTT_USER']}\n"
-                         f"password={USER['RUBRIC_MQTT_PASSWORD']}\nca={self.folder}/ca.crt\n",
-                         encoding="utf-8")
+        users, _ = self.tls_broker()
         base, _ = self.island(11, "--credentials", users)
         for stop in (self.broker.stop, self.broker.kill):
             stop()
@@ -473,12 +473,8 @@ islands:
         self.assertEqual(base.end()[0], 0)
 
     def test_tls_by_a_certificate(self):
-        certificates(self.folder)
-        self.broker.stop()
-        self.broker = Broker(self, self.broker.port, self.folder, asks=True)
-        users = self.folder / "gate"
-        secret = (f"user={USER['RUBRIC_MQTT_USER']}\npassword={USER['RUBRIC_MQTT_PASSWORD']}\n"
-                  f"ca={self.folder}/ca.crt\n")
+        users, _ = self.tls_broker(asks=True)
+        secret = users.read_text(encoding="utf-8")
         own = f"cert={self.folder}/host.crt\nkey={self.folder}/host.key\n"
         users.write_text(secret + own, encoding="utf-8")
         base = self.started("base-station", "--island", 12, "--space", self.broker.url,

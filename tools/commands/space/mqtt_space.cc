@@ -245,7 +245,7 @@ class MqttSpace::Client {
         if (result == MOSQ_ERR_SUCCESS && cut()) result = MOSQ_ERR_CONN_LOST;
       }
       std::unique_lock lock(mutex_);
-      if (!tried || result == MOSQ_ERR_CONN_LOST) say(result);
+      if (!tried || result == MOSQ_ERR_CONN_LOST) say(mosquitto_strerror(result));
       if (!was_connected_ && (tls_failed_ || result == MOSQ_ERR_TLS)) {
         broken_ =
             name_ +
@@ -280,8 +280,7 @@ class MqttSpace::Client {
   void connected(int code) {
     const std::lock_guard lock(mutex_);
     if (code != 0) {
-      if (!said_) text::print(stderr, "rubric: {}: {}\n", name_, mosquitto_connack_string(code));
-      said_ = true;
+      say(mosquitto_connack_string(code));
       return;
     }
     was_connected_ = true;
@@ -297,17 +296,14 @@ class MqttSpace::Client {
 
   void disconnected(int code) {
     const std::lock_guard lock(mutex_);
-    if (code != 0) say(code);
+    if (code != 0) say(connected_ ? "the connection is lost" : mosquitto_strerror(code));
     connected_ = false;
     done_.notify_all();
   }
 
   // Says why it is not connected, once; with the mutex held.
-  void say(int result) {
-    if (!said_) {
-      text::print(stderr, "rubric: {}: {}\n", name_,
-                  connected_ ? "the connection is lost" : mosquitto_strerror(result));
-    }
+  void say(const char* why) {
+    if (!said_) text::print(stderr, "rubric: {}: {}\n", name_, why);
     said_ = true;
   }
 
