@@ -199,7 +199,7 @@ std::string harmless(std::string_view text, Keep keep) {
 void print_harmless(std::FILE* file, std::string_view text) {
   const std::string out = harmless(text, Keep::kLines);
   const bool is_whole = std::fwrite(out.data(), 1, out.size(), file) == out.size();
-  // Words that nobody reads are no reason to end: a thread could not even say so.
+  // It is lost, since an exception would end the program when a thread reports something.
   if (is_whole || file == stderr) return;
   throw std::system_error(errno, std::generic_category(), "cannot write");
 }

@@ -45,7 +45,7 @@ void MoteApplication::happened(const machine::Notice& notice, Caller&) {
 void MoteApplication::asked(Bytes data) {
   const auto view = rubicon::ReadUpdatesView::parse(data);
   if (!view || view->type() != rubicon::AmType::kReadUpdates) return;
-  // What it does not have it cannot read.
+  // It reads only the transducers that it has.
   transducers_ = static_cast<std::uint16_t>(view->transducers().raw() & descriptor_.transducers);
   period_ = lines::Milliseconds(view->sampling_rate());
   send_at_ = steady_clock::now() + std::max(period_, kShortest);
