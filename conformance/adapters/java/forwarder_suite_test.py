@@ -27,6 +27,8 @@ HERE = pathlib.Path(__file__).resolve().parent
 MISTAKE = "reads_numbers_backwards"
 ITS_RULE = "T2-CONTENT"
 PARTS = 9
+# They last two minutes each where time is real; java_base_station_suite_test runs them.
+LONG = "many.*"
 # A station lives for a second or two: code that runs once is not worth an optimising compiler.
 SHORT_LIVED = ["-XX:TieredStopAtLevel=1", "-XX:+UseSerialGC", "-Xshare:auto"]
 
@@ -48,8 +50,8 @@ def run_at_line(rubric, java, classes, report, which):
     """Those cases; the station connects as soon as somebody listens."""
     with held_port() as port:
         tested = subprocess.Popen([rubric, "test", "--target", f"sf-server:{port}", "--role",
-                                   "base_station", "--format", "json", "--out", str(report),
-                                   *which])
+                                   "base_station", "--except", LONG, "--format", "json", "--out",
+                                   str(report), *which])
         station = [java, *SHORT_LIVED, "-cp", str(classes), "rubric.basestation.ForwarderClient",
                    f"127.0.0.1:{port}", "11"]
         while tested.poll() is None:
@@ -65,7 +67,8 @@ def run_with_application(rubric, java, classes, report, which):
         app = " ".join([java, *SHORT_LIVED, "-cp", str(classes), "rubric.basestation.LiveAdapter",
                         f"127.0.0.1:{port}"])
         subprocess.run([rubric, "test", "--target", f"sf-server:{port}:restart", "--app", app,
-                        "--role", "base_station", "--format", "json", "--out", str(report), *which])
+                        "--role", "base_station", "--except", LONG, "--format", "json", "--out",
+                        str(report), *which])
     return cases_of(report)
 
 
