@@ -156,9 +156,10 @@ class Install(unittest.TestCase):
         """What the Debian package rubric has."""
         prefix = self.base / "tool"
         run("cmake", "--install", BUILD, "--component", "tool", "--prefix", prefix)
-        chapter = (ROOT / "tools/book/chapters/34-run.md").read_text(encoding="utf-8")
-        named = set(re.findall(r"app: python3 (\w+\.py)", chapter))
-        self.assertEqual(named, {"door.py", "robot.py"})
+        chapters = "".join((ROOT / "tools/book/chapters" / name).read_text(encoding="utf-8")
+                           for name in ("34-run.md", "35-scenarios.md"))
+        named = set(re.findall(r"app: python3 (\w+\.py)", chapters))
+        self.assertEqual(named, {"door.py", "hospital.py", "robot.py"})
         for name in named:
             self.assertTrue((prefix / "share/doc/rubric/examples" / name).exists(), name)
 
