@@ -215,8 +215,9 @@ class SwappedFields(unittest.TestCase):
         place = next(self.copy.rglob("wireshark_test.py"))
         module = importlib.util.module_from_spec(
             importlib.util.spec_from_file_location("wireshark_test", place))
+        sys.argv.insert(1, str(self.swapped))  # As the first argument of a test of commands.
+        sys.path.insert(0, str(place.parent))
         module.__spec__.loader.exec_module(module)
-        module.RUBRIC, module.ROOT = self.swapped, self.copy
         suite = unittest.TestSuite(module.Dissector(name) for name in (
             "test_generated_serial_frames", "test_generated_radio_frames"))
         result = unittest.TestResult()
