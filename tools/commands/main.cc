@@ -2,12 +2,14 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <iterator>
 #include <new>
 #include <string_view>
 
@@ -20,6 +22,38 @@ constexpr const char* kFooter =
     "was\n"
     "decided or not all was done, 64 usage, 66 input cannot be read, 74 output cannot be written.\n"
     "'rubric COMMAND --help' says more.";
+
+struct Entry {
+  std::string_view name;
+  void (*add)(rubric::cli::Command& program);
+};
+// In the order of the help.
+constexpr Entry kCommands[] = {
+    {"decode", rubric::tools::add_decode},
+    {"encode", rubric::tools::add_encode},
+    {"convert", rubric::tools::add_convert},
+    {"stats", rubric::tools::add_stats},
+    {"explain", rubric::tools::add_explain},
+    {"messages", rubric::tools::add_messages},
+    {"send", rubric::tools::add_send},
+    {"forward", rubric::tools::add_forward},
+    {"install-wireshark", rubric::tools::add_install_wireshark},
+    {"check", rubric::tools::add_check},
+    {"test", rubric::tools::add_test},
+    {"new-adapter", rubric::tools::add_new_adapter},
+    {"new-protocol", rubric::tools::add_new_protocol},
+    {"shrink", rubric::tools::add_shrink},
+    {"diff", rubric::tools::add_diff},
+    {"chart", rubric::tools::add_chart},
+    {"run", rubric::tools::add_run},
+    {"monitor", rubric::tools::add_monitor},
+    {"simulate", rubric::tools::add_simulate},
+    {"explore", rubric::tools::add_explore},
+    {"coverage", rubric::tools::add_coverage},
+    {"generate", rubric::tools::add_generate},
+    {"repro", rubric::tools::add_repro},
+    {"completion", rubric::tools::add_completion},
+};
 
 std::atomic<bool> without_memory = false;
 
@@ -51,30 +85,13 @@ int run(int argc, char** argv) {
       "rubric", "Codec and conformance test kit for the RUBICON Communication Layer."};
   program.version(RUBRIC_VERSION);
   program.footer(kFooter);
-  rubric::tools::add_decode(program);
-  rubric::tools::add_encode(program);
-  rubric::tools::add_convert(program);
-  rubric::tools::add_stats(program);
-  rubric::tools::add_explain(program);
-  rubric::tools::add_messages(program);
-  rubric::tools::add_send(program);
-  rubric::tools::add_forward(program);
-  rubric::tools::add_install_wireshark(program);
-  rubric::tools::add_check(program);
-  rubric::tools::add_test(program);
-  rubric::tools::add_new_adapter(program);
-  rubric::tools::add_new_protocol(program);
-  rubric::tools::add_shrink(program);
-  rubric::tools::add_diff(program);
-  rubric::tools::add_chart(program);
-  rubric::tools::add_run(program);
-  rubric::tools::add_monitor(program);
-  rubric::tools::add_simulate(program);
-  rubric::tools::add_explore(program);
-  rubric::tools::add_coverage(program);
-  rubric::tools::add_generate(program);
-  rubric::tools::add_repro(program);
-  rubric::tools::add_completion(program);
+  // To make the options of all takes longer than to decode a frame.
+  const std::string_view first = argc > 1 ? argv[1] : "";
+  const bool alone = first != "completion" &&
+                     std::ranges::find(kCommands, first, &Entry::name) != std::end(kCommands);
+  for (const Entry& command : kCommands) {
+    if (!alone || command.name == first) command.add(program);
+  }
   const int code = program.parse_and_run(argc, argv);
   errno = 0;
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
