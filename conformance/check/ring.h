@@ -1,30 +1,44 @@
 // A ring that keeps the last things pushed.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
 namespace rubric::check {
 
-/// Holds the last `kRoom` things that were pushed and forgets older ones. Allocates with the first
-/// one.
+/// Holds the last kRoom things that were pushed, or more by make_room(), and forgets older ones.
+/// Allocates with the first one.
 template <typename T, std::size_t kRoom>
 class Ring {
  public:
   std::size_t size() const { return count_; }
-  bool full() const { return count_ == kRoom; }
+  /// Returns whether the next push forgets the oldest.
+  bool full() const { return count_ > 0 && count_ == items_.size(); }
   /// Returns the i-th newest; i < size().
-  T& newest(std::size_t i) { return items_[(next_ + kRoom - 1 - i) % kRoom]; }
-  const T& newest(std::size_t i) const { return items_[(next_ + kRoom - 1 - i) % kRoom]; }
+  T& newest(std::size_t i) { return items_[(next_ + items_.size() - 1 - i) % items_.size()]; }
+  const T& newest(std::size_t i) const {
+    return items_[(next_ + items_.size() - 1 - i) % items_.size()];
+  }
   /// Returns the i-th oldest; i < size().
-  T& oldest(std::size_t i) { return items_[(next_ + kRoom - count_ + i) % kRoom]; }
+  T& oldest(std::size_t i) { return newest(count_ - 1 - i); }
   T& push(const T& item) {
     if (items_.empty()) items_.resize(kRoom);
     T& place = items_[next_];
     place = item;
-    next_ = (next_ + 1) % kRoom;
-    if (count_ < kRoom) ++count_;
+    next_ = (next_ + 1) % items_.size();
+    if (count_ < items_.size()) ++count_;
     return place;
+  }
+  /// Makes room for a push: of more than kRoom things the oldest is forgotten, which `forget` is
+  /// told, unless it is still `needed` and there are fewer than `most`.
+  template <typename Needed, typename Forget>
+  void make_room(std::size_t most, Needed needed, Forget forget) {
+    while (count_ >= kRoom && (count_ >= most || !needed(oldest(0)))) {
+      forget(oldest(0));
+      --count_;
+    }
+    if (full()) grow();
   }
   void clear() { count_ = 0; }
   /// Forgets the newest that `keeps` refuses, and all older ones.
@@ -36,6 +50,12 @@ class Ring {
   }
 
  private:
+  void grow() {
+    std::rotate(items_.begin(), items_.begin() + static_cast<std::ptrdiff_t>(next_), items_.end());
+    next_ = count_;
+    items_.resize(2 * count_);
+  }
+
   std::vector<T> items_;
   std::size_t next_ = 0;
   std::size_t count_ = 0;

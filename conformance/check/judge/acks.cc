@@ -67,11 +67,25 @@ void Acks::arrived(std::uint16_t node, const Observation& seen, std::uint16_t se
   arrived.came = arrival.came;
   arrived.order = ++orders_[node].came;
   if (arrived.must_ack && arrived.sure) ++owed_[node];
-  if (ring.full()) {
-    missing_delivery(node, ring.oldest(0), seen.place.time_us);
-    close(node, ring.oldest(0));
-  }
+  const std::int64_t now = seen.place.time_us;
+  ring.make_room(
+      kRoomMost, [&](const Arrived& one) { return waits(node, one, now); },
+      [&](Arrived& one) {
+        missing_delivery(node, one, now);
+        close(node, one);
+      });
   ring.push(arrived);
+}
+
+// Returns whether the message may still be delivered or acked. What a log has may wait for long.
+bool Acks::waits(std::uint16_t node, const Arrived& arrived, std::int64_t now_us) {
+  const Device& device = context_.device(node);
+  const bool undelivered = device.application && arrived.delivers != ReqId::kNone;
+  if (!(undelivered && arrived.delivered == 0) && !(arrived.ackable && arrived.acks == 0)) {
+    return false;
+  }
+  constexpr std::int64_t kLongUs = 10'000'000;
+  return now_us <= context_.due_us(node, arrived.whole_us) + (device.hearing ? kLongUs : 0);
 }
 
 void Acks::repeated(std::uint16_t node, const Net& net, std::int64_t now_us) {

@@ -29,6 +29,7 @@ Originals::Originals(Context& context, std::size_t devices)
       stale_(devices),
       acks_(devices),
       calls_(devices),
+      forgot_(devices),
       strays_us_(devices, -1),
       begun_(devices),
       moved_(devices) {}
@@ -37,6 +38,7 @@ void Originals::begin_life(std::uint16_t node) {
   sent_[node].clear();
   acks_[node].clear();
   calls_[node].clear();
+  forgot_[node] = false;
   begun_[node] = true;
 }
 
@@ -57,6 +59,15 @@ void Originals::called(std::uint16_t node, const Observation& seen, const machin
   const Link up = base ? Link::kPeis : device.role == Role::kSink ? Link::kSerial : Link::kRadio;
   const bool to_mote = here && call.dest.devid != machine::kNullDevid;
   const bool may_stay = free || !shown || moved_[node];
+  const auto may_leave = [&](const Call& before) {
+    constexpr std::int64_t kLongUs = 10'000'000;
+    const bool may_stay_for_ever = before.free || before.held;
+    const bool late = seen.place.time_us - before.place.time_us > kLongUs;
+    return !before.left && before.result != machine::kNoSeq && !(may_stay_for_ever && late);
+  };
+  calls_[node].make_room(kRoomMost, may_leave, [&](const Call& before) {
+    if (may_leave(before)) forgot_[node] = true;
+  });
   Call& one = calls_[node].push(
       {&call, {}, {}, seen.place, may_stay, to_mote ? down : up, may_stay, seen.place.time_us});
   one.self = self;
@@ -345,7 +356,7 @@ Originals::Asked Originals::judge_wrap(std::uint16_t node, const Observation& se
   if (same != nullptr) {
     // A link may repeat a frame, but not with another number.
     const bool left = same->left && same->left == same->result;
-    if (left && (context_.device(node).whole || same->left != net.seq_num) && !calls.full()) {
+    if (left && (context_.device(node).whole || same->left != net.seq_num) && !forgot_[node]) {
       context_.report(
           net.reliable == 1 ? "T3-RESEND"_rule : "N2-ONCE"_rule, Severity::kFail, seen.place, node,
           {name_of(net) + " is sent again, " + ms_text(seen.place.time_us - same->left_us) +
@@ -366,10 +377,10 @@ Originals::Asked Originals::judge_wrap(std::uint16_t node, const Observation& se
     if (same->result == net.seq_num) {
       context_.left(node, link, seen.place, called_us, same->told_us + kCallUs, name_of(net));
     }
-    if (same->result && !calls.full()) judge_result(node, seen, *same);
+    if (same->result && !forgot_[node]) judge_result(node, seen, *same);
     return again ? Asked::kUnknown : Asked::kYes;
   }
-  if ((calls.size() == 0 && !context_.device(node).whole) || calls.full()) return Asked::kUnknown;
+  if ((calls.size() == 0 && !context_.device(node).whole) || forgot_[node]) return Asked::kUnknown;
   // A message from before the log may have waited. Nobody knows what a log leaves out unless it is
   // whole or has what the node was given (decision 13).
   const bool whole = context_.device(node).hearing && (context_.options.start_cold || begun_[node]);
@@ -415,8 +426,11 @@ void Originals::sent(std::uint16_t node, const Observation& seen, const Net& net
     if (call.failed) sent.told = 1;
     break;
   }
-  if (sent_[node].full()) close(node, sent_[node].size() - 1, seen.place.time_us);
-  sent_[node].push(sent);
+  Ring<Sent, kRoom>& ring = sent_[node];
+  ring.make_room(
+      kRoomMost, [&](const Sent& before) { return awaits(node, before, seen.place.time_us); },
+      [&](const Sent&) { close(node, ring.size() - 1, seen.place.time_us); });
+  ring.push(sent);
 }
 
 void Originals::judge_content(std::uint16_t node, const Observation& seen, const Net& net) {

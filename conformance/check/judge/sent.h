@@ -70,6 +70,7 @@ class Originals {
 
  private:
   static constexpr std::size_t kRoom = 128;
+  static constexpr std::size_t kRoomMost = 4096;
   static constexpr std::int64_t kTimeouts = 2;  ///< After so many assumed ones an event is missed.
   static constexpr std::int64_t kForever = 5;   ///< And after so many there is none.
 
@@ -94,6 +95,7 @@ class Originals {
   void judge_address(std::uint16_t node, const Observation& seen, const Net& net,
                      machine::Link link, machine::Address own);
   void judge_result(std::uint16_t node, const Observation& seen, const Call& call);
+  bool awaits(std::uint16_t node, const Sent& sent, std::int64_t now_us) const;
   void judge_late(std::uint16_t node, const Observation& seen, const Call& call,
                   machine::Link link);
   bool waits(std::uint16_t node, std::int64_t since_us, std::int64_t now_us);
@@ -122,6 +124,7 @@ class Originals {
   };
   std::vector<Ring<Ack, kRoom>> acks_;
   std::vector<Ring<Call, kRoom>> calls_;
+  std::vector<bool> forgot_;             ///< Calls that may still leave were too many.
   std::vector<std::int64_t> strays_us_;  ///< When a node was last given an ack of nothing it sent.
   std::vector<bool> begun_;  ///< Its start is in the log, so that it has no older calls.
   std::vector<bool> moved_;  ///< Its application set the island of a base station.

@@ -59,6 +59,14 @@ bool Originals::ill_acked(std::uint16_t node, const Net& message) const {
   });
 }
 
+// Returns whether its application may still be told of the message's end.
+bool Originals::awaits(std::uint16_t node, const Sent& sent, std::int64_t now_us) const {
+  const std::int64_t patience_us =
+      kTimeouts * context_.ack_timeout_us(node) + context_.response_us(node);
+  return context_.device(node).application && sent.net.reliable == 1 && sent.told == 0 &&
+         now_us - sent.place.time_us <= patience_us;
+}
+
 void Originals::told(std::uint16_t node, const Observation& seen, const machine::AckReceived& ack) {
   const std::int64_t now = seen.place.time_us;
   Ring<Sent, kRoom>& ring = sent_[node];
@@ -81,10 +89,7 @@ void Originals::told(std::uint16_t node, const Observation& seen, const machine:
     // many sent at once the first are forgotten here before their timeout.
     const Device& device = context_.device(node);
     const bool elsewhere = device.role == Role::kBaseStation && !logs_peis(context_.run, node);
-    const std::int64_t patience_us =
-        kTimeouts * context_.ack_timeout_us(node) + context_.response_us(node);
-    const bool forgotten =
-        ring.full() && now - ring.newest(ring.size() - 1).place.time_us <= patience_us;
+    const bool forgotten = ring.size() + 1 >= kRoomMost && awaits(node, ring.oldest(0), now);
     const bool came = heard_ack(node, ack.seq_num, [](const Net&) { return true; });
     context_.report(came || !ack.success ? "T3-MATCH"_rule : "T3-SUCCESS"_rule,
                     elsewhere || forgotten ? Severity::kInconclusive
