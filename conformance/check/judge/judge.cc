@@ -419,10 +419,7 @@ void Judge::radio_net(std::uint32_t index, const Observation& seen, const Mark& 
     hears(sink, {Role::kSink, {sinks_.island(sink), am}, true, context_.sink_am},
           machine::Link::kRadio, seen, sender, net, sure == sink || mark.receiver == sink);
   }
-  if (net.is_ack()) ack_comes(net);
-  if (net.is_ack() && mark.receiver != kNobody) {
-    originals_.ack_given(mark.receiver, net, seen.place.time_us);
-  }
+  if (net.is_ack()) ack_comes(net, seen, mark.receiver);
 }
 
 // Takes a message of the node's own.
@@ -495,10 +492,7 @@ void Judge::serial(std::uint32_t index, const Observation& seen, const Mark& mar
     up_serial(seen, mark, sink, net, passes);
     if (!whole_log) announcements_.showed_life(sink, seen.place.time_us);
   }
-  if (net.is_ack()) ack_comes(net);
-  if (net.is_ack() && mark.receiver != kNobody) {
-    originals_.ack_given(mark.receiver, net, seen.place.time_us);
-  }
+  if (net.is_ack()) ack_comes(net, seen, mark.receiver);
 }
 
 void Judge::whole(const Observation& seen, std::uint16_t sender) {

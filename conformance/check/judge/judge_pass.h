@@ -76,7 +76,7 @@ class Judge {
   // Returns whether the ack of a message to the node may find no room.
   bool no_room(std::uint16_t node, const Net& net) const;
   // Counts an ack at the originator of the acked message.
-  void ack_comes(const Net& ack);
+  void ack_comes(const Net& ack, const Observation& seen, std::uint16_t given);
   void serial(std::uint32_t index, const Observation& seen, const Mark& mark);
   // Judges the length of a net_msg on a serial line, the first one that is cut short of a sender.
   void whole(const Observation& seen, std::uint16_t sender);
