@@ -257,7 +257,7 @@ class Mote:
         return message.number
 
     def message(self, message):
-        if not self.address or message.dest.island not in (self.address.island, ALL):
+        if message.dest.island not in (self.address.island, ALL):
             return
         if message.dest.device not in (self.device, ALL):
             return
