@@ -298,6 +298,9 @@ class Run {
       if (noise.prefixed != 0) what += "; " + unknown_prefix_text(noise.prefixed, noise.prefix);
       remark(what);
     }
+    if (!noise.marker.empty()) {
+      remark(fmt::format("'{}' before the bytes of its lines is passed over", noise.marker));
+    }
     for (const auto& [link_type, count] : passed_over_) {
       if (is_network_link(link_type)) {
         remark(fmt::format("{} of {} packets are not ZEP packets (UDP port {})", count,

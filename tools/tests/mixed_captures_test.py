@@ -393,6 +393,26 @@ class Text(ProgramTest):
         self.assertIn("3 of its lines hold no packet; the first is line 2; line 3 has hex text "
                       "after 'mote1>', which is not a known time stamp", err)
 
+    def test_stamps_of_lines_are_times(self):
+        for stamps, times in ((("12:03:04.567", "12:03:05.067"), (43384.567, 43385.067)),
+                              (("[123.456]", "[123.5567]"), (123.456, 123.5567)),
+                              (("1690000000.123", "1690000001.123"),
+                               (1690000000.123, 1690000001.123)),
+                              (("12:03:04", "12:03:05"), (None, None))):
+            for line in (self.BLINK, self.SERIAL):
+                code, out, err = self.decoded("".join(f"{one} {line}\n" for one in stamps),
+                                              "--format", "jsonl")
+                self.assertEqual((code, err), (0, ""))
+                self.assertEqual(tuple(json.loads(one)["time"] for one in out.splitlines()), times)
+
+    def test_marks_of_received_bytes_are_said_once(self):
+        for mark in ("rx", "RX:", "<-"):
+            code, out, err = self.decoded(f"{mark} {self.BLINK}\n1.001 {mark} {self.SERIAL}\n",
+                                          "--format", "jsonl")
+            self.assertEqual((code, len(out.splitlines())), (0, 2), err)
+            self.assertEqual(err, f"rubric: stdin: '{mark}' before the bytes of its lines is "
+                                  "passed over\n")
+
     def test_mistakes_name_their_line(self):
         for text, where in ((f"{self.BLINK}\n# so far\n00 FF F\n", "line 3, character 8"),
                             (f"hello\n{self.BLINK}\n00 FF 0g\n", "line 3, character 8")):
