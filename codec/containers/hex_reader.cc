@@ -1,7 +1,6 @@
 #include "codec/containers/hex_reader.h"
 
 #include <algorithm>
-#include <array>
 #include <cstring>
 #include <string_view>
 
@@ -22,127 +21,6 @@ int hex_digit(std::uint8_t c) {
 
 bool is_space(std::uint8_t c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
-constexpr std::size_t kStampMost = 48;
-constexpr std::string_view kDigits = "0123456789";
-constexpr std::string_view kBlanks = " \t";
-
-bool is_digit(char c) { return kDigits.find(c) != kDigits.npos; }
-
-std::string_view word_of(std::string_view text) {
-  return text.substr(0, text.find_first_of(" \t\r|"));
-}
-
-std::size_t after_blanks(std::string_view text, std::size_t at) {
-  return std::min(text.find_first_not_of(kBlanks, at), text.size());
-}
-
-// Returns whether a word is as 1700000000.123.
-bool is_seconds(std::string_view word) {
-  const std::size_t point = word.find_first_not_of(kDigits);
-  return point != word.npos && point != 0 && point + 1 < word.size() && word[point] == '.' &&
-         word.find_first_not_of(kDigits, point + 1) == word.npos;
-}
-
-// Returns whether a word is as 12:34:56, and perhaps what follows: a fraction, a zone.
-bool is_clock(std::string_view word) {
-  const std::size_t hours = std::min(word.find_first_not_of(kDigits), word.size());
-  return (hours == 1 || hours == 2) && word.size() >= hours + 3 && word[hours] == ':' &&
-         is_digit(word[hours + 1]) && is_digit(word[hours + 2]) && word.back() != ':';
-}
-
-// Returns whether a word is as 2026-11-24, 24/11/2026 or 24.11.2026.
-bool is_date(std::string_view word) {
-  const std::size_t first = word.find_first_not_of(kDigits);
-  if (first == word.npos || first == 0 || std::string_view("-/.").find(word[first]) == word.npos) {
-    return false;
-  }
-  const auto is_other = [&](char c) { return c != word[first] && !is_digit(c); };
-  return word.find(word[first], first + 1) != word.npos && word.back() != word[first] &&
-         std::none_of(word.begin(), word.end(), is_other);
-}
-
-// Returns whether a text begins with the whole seconds since 1970, or the milli-, micro- or
-// nanoseconds, and hex text. Bytes in words of that size look the same where the size is even: all
-// words but the last have one size then.
-bool begins_with_epoch(std::string_view text) {
-  const std::string_view word = word_of(text);
-  const std::size_t size = word.size();
-  const bool sized = size == 10 || size == 13 || size == 16 || size == 19;
-  if (!sized || word[0] != '1' || word.find_first_not_of(kDigits) != word.npos) return false;
-  if (size % 2 != 0) return true;
-  const std::string_view rest = text.substr(after_blanks(text, size));
-  const std::string_view next = word_of(rest);
-  if (next.empty() || next[0] == '#' || text.find(':') != text.npos) return false;
-  const std::size_t third = rest.find_first_not_of(" \t\r", next.size());
-  const bool last = third == rest.npos || rest[third] == '#';
-  return next.size() > size || (next.size() < size && !last);
-}
-
-// Returns the end of a text that names who printed a packet, as `mote 2:`; 0 without one.
-std::size_t label_end(std::string_view text) {
-  if (!text.starts_with("mote") && !text.starts_with("node")) return 0;
-  constexpr std::size_t kName = 4;
-  const std::size_t number = after_blanks(text, kName);
-  const std::size_t end = std::min(text.find_first_not_of(kDigits, number), text.size());
-  if (end == number || text.substr(end, 1) != ":") return 0;
-  const std::size_t next = after_blanks(text, end + 1);
-  const Bytes rest(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
-  return begins_packet(rest.from(next)) ? next : 0;
-}
-
-bool is_month(std::string_view word) {
-  constexpr std::array<std::string_view, 12> kMonths{"Jan", "Feb", "Mar", "Apr", "May", "Jun",
-                                                     "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"};
-  return std::find(kMonths.begin(), kMonths.end(), word) != kMonths.end();
-}
-
-// Returns the end of the date that a text begins with, and of the blanks after it; 0 without one.
-std::size_t date_end(std::string_view text) {
-  std::string_view word = word_of(text);
-  std::size_t end = word.size();
-  if (is_date(word)) return after_blanks(text, end);
-  if (!is_month(word)) return 0;
-  const std::size_t day = after_blanks(text, end);
-  word = word_of(text.substr(day));
-  const bool whole =
-      !word.empty() && word.size() <= 2 && word.find_first_not_of(kDigits) == word.npos;
-  if (!whole) return 0;
-  end = after_blanks(text, day + word.size());
-  word = word_of(text.substr(end));
-  const bool is_year = word.size() == 4 && word.find_first_not_of(kDigits) == word.npos;
-  return is_year ? after_blanks(text, end + word.size()) : end;
-}
-
-// Returns the end of a time of day, as 12:34:56 or 10:00:00 AM; 0 without one.
-std::size_t clock_end(std::string_view text) {
-  const std::size_t end = word_of(text).size();
-  if (!is_clock(text.substr(0, end))) return 0;
-  const std::size_t half = after_blanks(text, end);
-  const std::string_view word = word_of(text.substr(half));
-  const bool is_half = word == "AM" || word == "PM" || word == "am" || word == "pm";
-  return is_half ? half + word.size() : end;
-}
-
-// Returns the end of the stamp itself; 0 without one.
-std::size_t stamp_end(std::string_view text) {
-  if (text.starts_with('[') || text.starts_with('(')) {
-    const std::size_t end = text.find(text[0] == '[' ? ']' : ')');
-    const bool dated = text.substr(0, end).find_first_of(kDigits) != text.npos;
-    return end != text.npos && dated ? end + 1 : 0;
-  }
-  std::string_view word = word_of(text);
-  if (word.ends_with(':')) word.remove_suffix(1);
-  if (is_seconds(word)) return word.size();
-  const std::size_t day_end = word.find('T');
-  if (day_end != word.npos && is_date(word.substr(0, day_end)) &&
-      is_clock(word.substr(day_end + 1))) {
-    return word.size();
-  }
-  const std::size_t date = date_end(text);
-  const std::size_t clock = clock_end(text.substr(date));
-  return clock == 0 ? 0 : date + clock;
-}
-
 std::uint16_t link_type_of(const ReaderOptions& options) {
   switch (options.hex_framing) {
     case Framing::kHdlc: return kLinkSerial;
@@ -154,22 +32,6 @@ std::uint16_t link_type_of(const ReaderOptions& options) {
 }
 
 }  // namespace
-
-std::size_t stamp_size(Bytes line) {
-  const std::string_view text(reinterpret_cast<const char*>(line.data()), line.size());
-  const std::size_t begin = after_blanks(text, 0);
-  const std::string_view first = word_of(text.substr(begin));
-  if (first.size() == 2 && is_hex_digit(static_cast<std::uint8_t>(first[0]))) return 0;  // A byte.
-  std::size_t end = stamp_end(text.substr(begin, kStampMost));
-  if (end == 0 && begins_with_epoch(text.substr(begin))) end = word_of(text.substr(begin)).size();
-  std::size_t next = begin + end;
-  const bool marked = end != 0 && next < text.size() && (text[next] == '|' || text[next] == ':');
-  if (marked) ++next;  // The end of the stamp.
-  if (end != 0) next = after_blanks(text, next);
-  if (end != 0 && text.substr(next, 2) == "->") next = after_blanks(text, next + 2);
-  const std::size_t label = label_end(text.substr(next));
-  return end == 0 && label == 0 ? 0 : next + label;
-}
 
 bool begins_packet(Bytes text) {
   std::size_t pairs = 0;
@@ -183,7 +45,7 @@ bool begins_packet(Bytes text) {
 }
 
 std::size_t unknown_prefix(Bytes line) {
-  const Bytes text = line.from(stamp_size(line));
+  const Bytes text = line.from(read_stamp(line).size);
   const auto* at = std::find_if_not(text.begin(), text.end(), is_space);
   if (begins_packet(text)) return 0;
   while (at != line.end()) {
@@ -297,9 +159,10 @@ bool HexReader::is_serial_bytes(Bytes bytes) const {
   return in_frame_ || begins_serial_frame(bytes);
 }
 
-void HexReader::serial_bytes(Bytes bytes, PacketSink sink) {
+void HexReader::serial_bytes(Bytes bytes, std::int64_t time_ns, PacketSink sink) {
   auto here = [&](const Packet& packet) {
     Packet placed = packet;
+    placed.time_ns = time_ns;
     placed.offset_bytes = line_offset_;
     placed.line = line_number_;
     sink(placed);
@@ -314,6 +177,14 @@ void HexReader::serial_bytes(Bytes bytes, PacketSink sink) {
   in_frame_ = bytes[bytes.size() - 1] != kHdlcFlag;
 }
 
+std::int64_t HexReader::time_of(const LineStamp& stamp) {
+  constexpr std::int64_t kHalfADayNs = kDayNs / 2;
+  if (!stamp.of_day) return stamp.time_ns;
+  if (of_day_ns_ - stamp.time_ns > kHalfADayNs) ++days_;
+  of_day_ns_ = stamp.time_ns;
+  return days_ * kDayNs + stamp.time_ns;
+}
+
 void HexReader::pass_over(Bytes whole) {
   if (noise_.lines++ == 0) noise_.first = line_number_;
   if (noise_.prefixed != 0) return;
@@ -326,9 +197,11 @@ void HexReader::pass_over(Bytes whole) {
 void HexReader::line(Bytes whole, PacketSink sink) {
   ++line_number_;
   if (line_number_ == 1) whole = whole.from(mark_size(whole));
-  const std::size_t stamp = stamp_size(whole);
-  const Bytes text = whole.from(stamp);
+  const LineStamp stamp = read_stamp(whole);
+  const Bytes text = whole.from(stamp.size);
+  if (noise_.marker.empty()) noise_.marker = stamp.marker;
   Packet packet;
+  packet.time_ns = time_of(stamp);
   packet.line = line_number_;
   packet.framing = options_.hex_framing;
   packet.direction = options_.direction;
@@ -347,14 +220,14 @@ void HexReader::line(Bytes whole, PacketSink sink) {
   if (noise) return pass_over(whole);
   if (packet.error.fault != Fault::kNone) {
     packet.framing = Framing::kBare;
-    packet.error.offset_bytes += static_cast<std::uint32_t>(stamp);
+    packet.error.offset_bytes += static_cast<std::uint32_t>(stamp.size);
     packet.bytes = whole;
     packet.dropped_bytes = dropped_;
     return sink(packet);
   }
   if (bytes_.empty()) return;
   const Bytes bytes(bytes_.data(), bytes_.size());
-  if (is_serial_bytes(bytes)) return serial_bytes(bytes, sink);
+  if (is_serial_bytes(bytes)) return serial_bytes(bytes, packet.time_ns, sink);
   if (is_log_ && options_.hex_framing == Framing::kSf && bytes.size() < kPacketLineBytes) {
     return pass_over(whole);
   }
@@ -369,9 +242,10 @@ void HexReader::line(Bytes whole, PacketSink sink) {
 
 void HexReader::finish(PacketSink sink) {
   if (!held_.empty()) deliver_held(sink);
-  if (in_frame_) serial_bytes(Bytes(), sink);
+  if (in_frame_) serial_bytes(Bytes(), kNoTime, sink);
   line_offset_ = 0;
   line_number_ = 0;
+  of_day_ns_ = days_ = 0;
 }
 
 }  // namespace rubric

@@ -205,8 +205,9 @@ void decode_record(Bytes record, std::uint64_t original_bytes, std::uint16_t lin
   const bool cut = original_bytes > record.size();
   if (is_network_link(link_type)) {
     if (decode_udp_record(record, original_bytes, link_type, packet)) return;
+    if (is_zep_alone(packet.link_type)) link_type = packet.link_type;
   }
-  packet.link_type = link_type;
+  packet.link_type = link_type == kLinkNull ? kLinkLoop : link_type;
   packet.kind = packet.serial_seq = packet.crc = packet.fcs = kAbsent;
   packet.dropped_bytes = cut ? original_bytes - record.size() : 0;
   packet.bytes = record;

@@ -18,12 +18,17 @@ inline constexpr std::uint16_t kLinkRadioLinux = 191;  ///< IEEE802_15_4_LINUX.
 inline constexpr std::uint16_t kLinkRadioPhy = 215;    ///< IEEE802_15_4_NONASK_PHY.
 inline constexpr std::uint16_t kLinkPpi = 192;         ///< A header, then a record of another type.
 // Of networks that carry ZEP packets.
+inline constexpr std::uint16_t kLinkNull = 0;  ///< A loopback of BSD; a packet has kLinkLoop.
 inline constexpr std::uint16_t kLinkEthernet = 1;
 inline constexpr std::uint16_t kLinkRawIp = 101;
+inline constexpr std::uint16_t kLinkLoop = 108;
 inline constexpr std::uint16_t kLinkSll = 113;  ///< LINUX_SLL.
 inline constexpr std::uint16_t kLinkIpv4 = 228;
 inline constexpr std::uint16_t kLinkIpv6 = 229;
 inline constexpr std::uint16_t kLinkSll2 = 276;  ///< LINUX_SLL2.
+// None of pcap's: ZEP packets without a radio frame.
+inline constexpr std::uint16_t kLinkZepAck = 0xFFFE;
+inline constexpr std::uint16_t kLinkZepHello = 0xFFFF;
 
 /// The first and the last of the link types that everybody gives a meaning of their own, USER0 to
 /// USER15.
@@ -53,7 +58,7 @@ void append_tap_header(const RadioFacts& facts, bool has_fcs, std::string& out);
 /// kUnexpected and kTruncated by rule `container` (215: the preamble is not as it must be; 192: the
 /// header is not),
 /// kUnsupported (another link type, or a network's packet without ZEP: kBare and the bytes as they
-/// are).
+/// are; a ZEP packet without a frame has the link type kLinkZepAck or kLinkZepHello).
 void decode_record(Bytes record, std::uint64_t original_bytes, std::uint16_t link_type,
                    ReqId container, Packet& packet);
 

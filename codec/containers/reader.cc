@@ -73,7 +73,7 @@ TextLines look_at_lines(Bytes sample) {
     const bool whole = newline != sample.end();
     const Bytes written(p, static_cast<std::size_t>(newline - p));
     p = whole ? newline + 1 : newline;
-    const std::size_t stamp = stamp_size(written);
+    const std::size_t stamp = read_stamp(written).size;
     const Bytes line = written.from(stamp);
     found.others = found.others || stamp != 0;
     found.dump_rows += is_dump_row(line);

@@ -40,6 +40,7 @@ class Reader {
     std::uint64_t first = 0;     ///< Its number, from 1.
     std::uint64_t prefixed = 0;  ///< Number of the first that has hex text after an unknown prefix.
     std::string prefix = {};     ///< What that line begins with.
+    std::string marker = {};     ///< The first word for "received" before bytes, as 'RX:'.
   };
   virtual Noise noise() const { return {}; }
 

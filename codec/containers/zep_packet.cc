@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "codec/containers/link_record.h"
+#include "codec/runtime/crc16.h"
 
 namespace rubric {
 namespace {
@@ -97,6 +98,11 @@ bool take_link_header(Rest& rest, std::uint16_t link_type, std::uint16_t& type) 
       if (rest.bytes.size() < 20) return false;
       type = load_be16(rest.bytes.data());
       return rest.drop(20);
+    case kLinkNull:
+    case kLinkLoop:
+      // Before the packet is its family, whose number each system chooses and the version repeats.
+      if (!rest.drop(4)) return false;
+      [[fallthrough]];
     default:
       if (rest.bytes.empty()) return false;
       type = rest.bytes[0] >> 4 == 6 ? kEtherIpv6 : kEtherIpv4;
@@ -133,7 +139,19 @@ bool take_ipv6(Rest& rest) {
   return next == kProtocolUdp;
 }
 
-/// Returns the content of a datagram from or to ZEP's port.
+/// Returns whether a datagram of any port is one of ZEP: whether it is whole and no longer.
+bool is_zep(const Rest& datagram) {
+  const Result<ZepPacket> zep = parse_zep(datagram.bytes);
+  if (!zep || datagram.size != datagram.bytes.size()) return false;
+  const auto type = zep->type;
+  const std::size_t end =
+      type == ZepPacket::Type::kAck ? kZepAckBytes : zep->frame_offset_bytes + zep->frame.size();
+  const bool known = type == ZepPacket::Type::kData || type == ZepPacket::Type::kAck ||
+                     type == ZepPacket::Type::kHello;
+  return known && zep->frame.size() <= kRadioFrameMax && end == datagram.size;
+}
+
+/// Returns the content of a datagram of ZEP.
 std::optional<Rest> zep_datagram(Rest rest, std::uint16_t link_type) {
   std::uint16_t type = 0;
   if (!take_link_header(rest, link_type, type)) return std::nullopt;
@@ -141,12 +159,22 @@ std::optional<Rest> zep_datagram(Rest rest, std::uint16_t link_type) {
       (type == kEtherIpv4 && take_ipv4(rest)) || (type == kEtherIpv6 && take_ipv6(rest));
   if (!known || rest.bytes.size() < kUdpHeaderBytes) return std::nullopt;
   const std::uint8_t* const udp = rest.bytes.data();
-  if (load_be16(udp) != kZepPort && load_be16(udp + 2) != kZepPort) return std::nullopt;
+  const bool port = load_be16(udp) == kZepPort || load_be16(udp + 2) == kZepPort;
   const std::size_t length = load_be16(udp + 4);
   if (length != 0 && length < kUdpHeaderBytes) return std::nullopt;
   if (length != 0) rest.keep(length);
   rest.drop(kUdpHeaderBytes);
+  if (!port && !is_zep(rest)) return std::nullopt;
   return rest;
+}
+
+/// Takes RIOT's check sum for what it is. Since its radio HAL RIOT's native boards end a frame with
+/// the CRC of serial frames (cpu/native/socket_zep: crc16_ccitt_false_update from 0), whose bits
+/// are not reflected. They check neither; written as an FCS it would be wrong.
+void accept_riot_fcs(Packet& packet) {
+  if (packet.error.fault != Fault::kFcs || packet.fcs != crc16(packet.bytes)) return;
+  packet.fcs = kAbsent;
+  packet.error = Error{Fault::kNone, 0, ReqId::kNone};
 }
 
 }  // namespace
@@ -220,13 +248,17 @@ bool decode_zep_datagram(Bytes datagram, Packet& packet) {
   }
   packet.time_ns = zep->time_ns;
   const Bytes frame = zep->frame;
-  if (frame.empty() || zep->type == ZepPacket::Type::kHello) return false;
+  if (frame.empty() || zep->type == ZepPacket::Type::kHello) {
+    packet.link_type = zep->type == ZepPacket::Type::kHello ? kLinkZepHello : kLinkZepAck;
+    return false;
+  }
   packet.offset_bytes += zep->frame_offset_bytes;
   packet.radio.channel = zep->channel;
   constexpr std::uint8_t kLqiUnknown = 255;
   if (zep->lqi != 0 && zep->lqi != kLqiUnknown) packet.radio.lqi = zep->lqi;
   if (zep->has_fcs || frame.size() < kChipBytes) {
     decode_radio_record(frame, kLinkRadioFcs, packet);
+    accept_riot_fcs(packet);
     return true;
   }
   packet.radio.rssi = static_cast<std::int8_t>(frame[frame.size() - 2]);
@@ -240,14 +272,20 @@ bool decode_zep_datagram(Bytes datagram, Packet& packet) {
 
 bool is_network_link(std::uint16_t link_type) {
   switch (link_type) {
+    case kLinkNull:
     case kLinkEthernet:
     case kLinkRawIp:
+    case kLinkLoop:
     case kLinkSll:
     case kLinkIpv4:
     case kLinkIpv6:
     case kLinkSll2: return true;
     default: return false;
   }
+}
+
+bool is_zep_alone(std::uint16_t link_type) {
+  return link_type == kLinkZepAck || link_type == kLinkZepHello;
 }
 
 bool decode_udp_record(Bytes record, std::uint64_t original_bytes, std::uint16_t link_type,
@@ -266,7 +304,7 @@ bool decode_udp_record(Bytes record, std::uint64_t original_bytes, std::uint16_t
     decode_cut_zep_datagram(datagram->bytes, missing, packet);
   }
   packet.time_ns = time_ns;
-  packet.link_type = packet.error.requirement == "WIRE-ZEP"_rule ? 0 : kLinkRadioTap;
+  if (frame) packet.link_type = packet.error.requirement == "WIRE-ZEP"_rule ? 0 : kLinkRadioTap;
   if (!frame) packet.offset_bytes = begin;
   return frame;
 }

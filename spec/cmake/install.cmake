@@ -108,6 +108,15 @@ install(DIRECTORY spec/profiles spec/wire DESTINATION ${CMAKE_INSTALL_DATADIR}/r
   COMPONENT tool FILES_MATCHING PATTERN "*.yaml" PATTERN "*.ksy")
 install(DIRECTORY conformance/cases DESTINATION ${CMAKE_INSTALL_DATADIR}/rubric/conformance
   COMPONENT tool FILES_MATCHING PATTERN "*.rtr")
+# What helps, skeletons and the book name: pages about formats, and the vectors.
+file(GLOB formats RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS tools/commands/*.md)
+foreach(page conformance/PORTING.md conformance/protocols/README.md spec/README.md
+    spec/trace/README.md ${formats})
+  cmake_path(GET page PARENT_PATH folder)
+  install(FILES ${page} DESTINATION ${CMAKE_INSTALL_DATADIR}/rubric/${folder} COMPONENT tool)
+endforeach()
+install(DIRECTORY spec/vectors DESTINATION ${CMAKE_INSTALL_DATADIR}/rubric/spec
+  COMPONENT tool FILES_MATCHING PATTERN "*.yaml" PATTERN "*.jsonl" PATTERN "README.md")
 # The folders that README.md links to are not installed.
 file(READ README.md readme)
 string(REGEX REPLACE "\\[([^]]+)\\]\\([^)]*\\)" "\\1" readme "${readme}")

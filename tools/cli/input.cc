@@ -16,6 +16,7 @@
 #include "codec/containers/link_record.h"
 #include "codec/containers/reader.h"
 #include "codec/containers/zep_packet.h"
+#include "codec/generated/tinyos/am_header.h"
 #include "codec/lines/air.h"
 #include "codec/lines/broken.h"
 #include "codec/lines/line.h"
@@ -45,7 +46,6 @@ constexpr std::chrono::milliseconds kAirPatience{100};
 /// Returns what a link type holds that is not read here; empty where nobody meets it with motes.
 std::string_view foreign_link_name(std::uint16_t link_type) {
   switch (link_type) {
-    case 0: return " (loopback of BSD)";
     case 105: return " (802.11)";
     case 127: return " (802.11 with radiotap header)";
     case 189:
@@ -213,6 +213,8 @@ class Run {
       result_.live = true;
     }
     passed_over_.clear();
+    packets_of_.clear();
+    doubted_.clear();
     InputFile file(files_[source_.file_index], options_.follow, on_idle_);
     packed_damage_ = false;
     read(file);
@@ -298,7 +300,23 @@ class Run {
       if (noise.prefixed != 0) what += "; " + unknown_prefix_text(noise.prefixed, noise.prefix);
       remark(what);
     }
+    if (!noise.marker.empty()) {
+      remark(fmt::format("'{}' before the bytes of its lines is passed over", noise.marker));
+    }
+    for (const auto& [link_type, count] : doubted_) {
+      if (count != packets_of_[link_type]) continue;
+      remark(
+          fmt::format("none of its packets of link type {0} is sound as {1}; if they are of "
+                      "another kind: --link-type {0}=radio-fcs reads them as 802.15.4, for one",
+                      link_type, link_type == kLinkSerial ? "a serial frame" : "an AM packet"));
+    }
     for (const auto& [link_type, count] : passed_over_) {
+      if (is_zep_alone(link_type)) {
+        remark(fmt::format("{} of {} packets are ZEP {}, which hold no radio frame", count,
+                           source_.number,
+                           link_type == kLinkZepAck ? "acks" : "hellos of RIOT's nodes"));
+        continue;
+      }
       if (is_network_link(link_type)) {
         remark(fmt::format("{} of {} packets are not ZEP packets (UDP port {})", count,
                            source_.number, kZepPort));
@@ -313,6 +331,17 @@ class Run {
                       foreign_link_name(link_type), count, source_.number, hint);
       count == source_.number ? complain(what) : remark(what);
     }
+  }
+
+  // Counts packets of user-defined link types that nobody said to be what we take them for.
+  void doubt(const Packet& packet) {
+    if (!options_.links.empty() || packet.error.fault == Fault::kCut) return;
+    if (packet.link_type != kLinkSerial && packet.link_type != kLinkSf) return;
+    ++packets_of_[packet.link_type];
+    const bool sound = packet.link_type == kLinkSerial
+                           ? packet.error.fault == Fault::kNone
+                           : static_cast<bool>(tinyos::AmHeaderView::parse(packet.bytes));
+    if (!sound) ++doubted_[packet.link_type];
   }
 
   // Returns whether a packet is of a link type that is not read.
@@ -398,6 +427,7 @@ class Run {
       ++passed_over_[packet.link_type];
       return;
     }
+    doubt(packet);
     if (!on_packet_(packet, source_)) result_.stopped = true;
   }
 
@@ -414,8 +444,8 @@ class Run {
   bool damaged_ = false;        // A file has damaged places.
   bool packed_ = false;         // The present file is compressed;
   bool packed_damage_ = false;  // that its compressed bytes are damaged was said.
-  std::map<std::uint16_t, std::uint64_t>
-      passed_over_;    // Packets of the present file, by link type.
+  // Packets of the present file, by link type: not ours; of types 147 and 148; not sound as those.
+  std::map<std::uint16_t, std::uint64_t> passed_over_, packets_of_, doubted_;
   bool lost_ = false;  // The line is gone, and that was said.
 };
 

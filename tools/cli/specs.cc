@@ -236,29 +236,42 @@ const reflect::RouteTable& routes_of(const reflect::Protocol& protocol) {
   return *generate::routes_of(protocol);
 }
 
-std::string dissector_with(const std::string& file) {
+std::string dissector_with(const std::string& spec) {
+  // Wireshark has beacons and commands of its own.
+  const auto dissected = [](const auto& name) { return name != kNone && name != kLinkFrames; };
   rubricc::Model model;
   rubricc::Diagnostics diagnostics;
   add_requirements(model);
+  std::vector<std::string> names;
   for (const auto& [name, text] : shipped_specs()) {
-    // Wireshark has beacons and commands of its own.
-    if (name != kNone && name != kLinkFrames)
-      rubricc::load_shipped_spec(name, shipped_specs(), model, diagnostics);
+    if (!dissected(name)) continue;
+    rubricc::load_shipped_spec(name, shipped_specs(), model, diagnostics);
+    names.push_back(name);
   }
-  rubricc::load_specs({file}, model, diagnostics, shipped_specs());
-  rubricc::add_am_frames(shipped_specs(), model, diagnostics);
+  const bool shipped = std::find(names.begin(), names.end(), spec) != names.end();
+  if (!shipped && !names_file(spec)) {
+    throw UsageError("--spec",
+                     fmt::format("expected a .ksy file or one of {}; given '{}'{}",
+                                 fmt::join(names, ", "), spec, reflect::did_you_mean(spec, names)));
+  }
+  if (!shipped) {
+    rubricc::load_specs({spec}, model, diagnostics, shipped_specs());
+    rubricc::add_am_frames(shipped_specs(), model, diagnostics);
+  }
   require_sound(model, diagnostics, rubricc::CheckFor::kDissector);
-  const auto& types = model.specs.back()->types;
-  if (std::none_of(types.begin(), types.end(),
+  const auto chosen = std::find_if(model.specs.begin(), model.specs.end(),
+                                   [&](const auto& one) { return one->id == spec; });
+  const rubricc::Spec& usual = shipped ? **chosen : *model.specs.back();
+  if (std::none_of(usual.types.begin(), usual.types.end(),
                    [](const auto& type) { return type->carrier == "serial"; })) {
     text::print(
         stderr,
         "rubric: {}: no type has '-am-type' or '-carrier: serial', so no packet leads to its "
         "messages\n",
-        file);
+        spec);
     exit_with(kExitInput);
   }
-  return rubricc::emit_lua(model, model.specs.back()->id).front().text;
+  return rubricc::emit_lua(model, usual.id).front().text;
 }
 
 OtherSpecs::OtherSpecs(const reflect::Protocol& chosen) : chosen_(chosen) {

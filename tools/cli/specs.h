@@ -53,8 +53,9 @@ std::string spec_with_message(const reflect::Protocol& chosen, std::string_view 
 /// Returns the routes to the messages of a protocol that protocol_of() returned.
 const reflect::RouteTable& routes_of(const reflect::Protocol& protocol);
 
-/// Returns the dissector of the shipped specs and the one of this file.
-std::string dissector_with(const std::string& file);
+/// Returns the dissector of the shipped specs and that of this .ksy file, if it is one. Frames are
+/// read by `spec`. Throws UsageError for another name.
+std::string dissector_with(const std::string& spec);
 
 /// Says once for each AM type, and once for beacons and commands, which other spec fits a message
 /// that the chosen one does not fit wholly.

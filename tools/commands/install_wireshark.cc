@@ -46,6 +46,7 @@ constexpr const char* kInstallWiresharkFooter =
     "Examples:\n"
     "  rubric install-wireshark\n"
     "  rubric install-wireshark --dry-run\n"
+    "  rubric install-wireshark --spec printf\n"
     "  sudo rubric install-wireshark --dir /usr/lib/x86_64-linux-gnu/wireshark   # for all users\n"
     "  rubric install-wireshark --remove\n"
     "Exit codes: 0 done, 64 usage, 66 something is missing, 74 something is in the\n"
@@ -56,7 +57,7 @@ struct InstallWiresharkOptions {
   bool dry_run = false;
   bool remove = false;
   bool force = false;
-  std::string spec;  ///< A .ksy file to dissect as well.
+  std::string spec;  ///< A shipped protocol or .ksy file to dissect as well.
 };
 
 [[noreturn]] void refuse(const fs::path& path, const std::string& why,
@@ -262,9 +263,11 @@ void add_install_wireshark(cli::Command& app) {
   sub.add_option("--dir", options->folder,
                  "Install into plugins and extcap of this folder, not the personal ones")
       .check(cli::given);
-  sub.add_option("--spec", options->spec,
-                 "Dissect the protocol of this .ksy file, too: the one that frames are read by, "
-                 "unless Wireshark's preference RUBRIC, Protocol, says otherwise")
+  sub.add_option(
+         "--spec", options->spec,
+         "Dissect this protocol that ships, as printf, or that of a .ksy file, too: the one "
+         "that frames are read by, unless Wireshark's preference RUBRIC, Protocol, says "
+         "otherwise")
       .check(cli::given);
   sub.add_flag("--dry-run", options->dry_run, "Say what would be done, and do nothing");
   sub.add_flag("--remove", options->remove, "Remove all of it again");

@@ -37,12 +37,14 @@ void append_bits(const reflect::MaskTable& mask, std::int64_t value, Buffer& out
 }
 
 std::string quoted(std::string_view text) {
-  std::string out = "\"";
-  for (const char c : text::harmless(text)) {
-    if (c == '"' || c == '\\') out += '\\';
-    out += c;
+  std::string plain;
+  for (const char c : text) {
+    constexpr std::string_view kFrom = "\"\\\n\r\t";
+    const std::size_t at = kFrom.find(c);
+    if (at != kFrom.npos) plain += '\\';
+    plain += at == kFrom.npos ? c : "\"\\nrt"[at];
   }
-  return out + '"';
+  return '"' + text::harmless(plain) + '"';
 }
 
 void append_plain_value(const Value& value, const Record& record, const JsonNodes& nodes,

@@ -214,6 +214,22 @@ class Install(unittest.TestCase):
         names = [row.split()[0] for row in listed.splitlines() if re.match(r"  \S", row)]
         return {name: run(rubric, name, "--help") for name in names}
 
+    def test_every_file_that_is_named_is_installed(self):
+        """In helps and in what commands lay down, under the paths of the project."""
+        rubric = self.prefix / "bin/rubric"
+        texts = {**self.commands(), "rubricc": run(self.prefix / "bin/rubricc", "--help")}
+        laid = self.base / "laid"
+        run(rubric, "new-adapter", "python", "--out", laid / "adapter")
+        run(rubric, "new-protocol", "probes", "--out", laid)
+        texts.update((path.name, path.read_text("utf-8")) for path in laid.glob("**/*.md"))
+        named = {(source, path) for source, text in texts.items()
+                 for path in re.findall(r"\b(?:spec|conformance|tools)/[\w./-]*\w", text)}
+        self.assertIn(("new-adapter", "conformance/PORTING.md"), named)
+        share = self.prefix / "share/rubric"
+        self.assertEqual([one for one in sorted(named) if not (share / one[1]).exists()], [])
+        vectors = len(list((ROOT / "spec/vectors").glob("**/*.yaml")))
+        self.assertEqual(len(list((share / "spec/vectors").glob("**/*.yaml"))), vectors)
+
     def test_every_example_runs_in_an_empty_folder(self):
         """With the files that it names beside it, and nothing of the project."""
         found = [(command, example) for command, text in self.commands().items()

@@ -178,6 +178,59 @@ class Install(Base):
         self.assertEqual(self.tree(), [])
         self.assertIn("not there", self.install("--remove"))
 
+    def told(self, spec, packets):
+        """What tshark and `rubric decode` say of packets: Info, and the notes about text."""
+        text = self.folder / "packets.hex"
+        text.write_text("".join(one.hex() + "\n" for one in packets), encoding="utf-8")
+        capture = self.folder / "packets.pcapng"
+        run(RUBRIC, "convert", text, "-o", capture, "--spec", spec)
+        done = run("tshark", "-r", capture, "-T", "fields", "-e", "_ws.col.Info", "-e",
+                   "_ws.expert.message", env=self.environment)
+        self.assertNotIn("Lua", done.stderr)
+        wanted = run(RUBRIC, "decode", capture, "--spec", spec, "--color", "never", "--width",
+                     "900")
+        return ([line.split("\t") for line in done.stdout.splitlines()],
+                [re.split(r" \* | !! ", line) for line in wanted.stdout.splitlines()])
+
+    def packet(self, payload):
+        return b"\0\xff\xff\0\2" + bytes([len(payload)]) + b"\x22\x64" + payload
+
+    def test_text_is_shown_as_text(self):
+        self.install("--spec", "printf")
+        texts = [b"Hi!\n\0\0", b'say "it"\\\t', b"", "23 \u00b0C\r\n".encode(), b"half \xc3",
+                 b"\xff\0x"]
+        found, wanted = self.told("printf", map(self.packet, texts))
+        self.assertEqual(len(found), len(texts))
+        for (info, note), line in zip(found, wanted):
+            self.assertEqual(info, re.sub(" +", " ", line[0][line[0].index("printf_msg"):]))
+            self.assertEqual(note, line[1] if len(line) > 1 else "")
+        self.assertIn('buffer="Hi!\\n"', found[0][0])
+        self.assertIn("not_text at 13: buffer is not UTF-8, it has the byte 195", found[4][1])
+        done = run("tshark", "-r", self.folder / "packets.pcapng", "-Y",
+                   'rubric.printf_msg.buffer contains "Hi!"', env=self.environment)
+        self.assertEqual(len(done.stdout.splitlines()), 1, done)
+
+    def test_text_of_a_file(self):
+        fields = ("{id: tag, type: str, size: 4, encoding: ASCII}",
+                  "{id: name, type: strz, size: 6, encoding: ASCII}",
+                  "{id: rest, type: str, size-eos: true, encoding: UTF-8, pad-right: 0x20}")
+        spec = self.folder / "texts.ksy"
+        text = ("meta: {id: texts, endian: be}\ntypes:\n  told:\n    -am-type: 100\n    seq:\n" +
+                "".join(f"      - {one}\n" for one in fields))
+        spec.write_text(text, encoding="utf-8")
+        self.install("--spec", spec)
+        found, wanted = self.told(spec, [self.packet(b"ABCDname\0xrest  "),
+                                         self.packet(b"AB\xe9Dnamename.")])
+        for (info, note), line in zip(found, wanted):
+            self.assertEqual(info, re.sub(" +", " ", line[0][line[0].index("told"):]))
+            self.assertEqual(note, line[1] if len(line) > 1 else "")
+        spec.write_text(text.replace("strz, size: 6", "strz"), encoding="utf-8")
+        self.assertIn("rubric --spec reads text", self.install("--spec", spec, code=66))
+
+    def test_a_protocol_that_does_not_ship(self):
+        said = self.install("--spec", "prinft", code=64)
+        self.assertIn("did you mean 'printf'?", said)
+
     def rules_of(self, capture):
         """The colouring rule of each packet."""
         done = run("tshark", "--color", "-r", capture, "-T", "fields", "-e",

@@ -104,8 +104,8 @@ CAPTURES = {
     "big_endian_ns.pcap": pcap(230, some(frame), ">", True),
     "phy.pcap": pcap(215, some(phy)),
     "tap.pcapng": pcapng([283], [(0, record) for record in some(tap)]),
-    "any_zep.pcap": pcap(113, some(lambda n: sll(ipv4(udp(zep(n), 53 if n % 5 == 4
-                                                          else ZEP_PORT))))),
+    "any_zep.pcap": pcap(113, some(lambda n: sll(ipv4(udp(b"query", 53) if n % 5 == 4
+                                                      else udp(zep(n)))))),
     "vlan_zep1.pcap": pcap(1, some(lambda n: ethernet(ipv4(udp(zep(n, 1)))))),
     "raw_ipv6_zep.pcap": pcap(101, some(lambda n: ipv6(udp(zep(n))))),
     "short.pcap": pcap(195, some(with_fcs), snaplen=12),
@@ -216,6 +216,39 @@ class Mixed(Captures):
         for wrong in ("150", "150=", "150=wifi", "146=radio", "15x=radio"):
             self.refused(("decode", user, "--link-type", wrong),
                          "expected a link type from 147 to 162")
+
+    def test_user_link_types_that_are_something_else(self):
+        """147 and 148 are taken for ours; where none of their packets is, it is said."""
+        for link, what in ((147, "a serial frame"), (148, "an AM packet")):
+            name = f"user_{link}.pcap"
+            (self.path / name).write_bytes(pcap(link, some(with_fcs)))
+            hint = f"none of its packets of link type {link} is sound as {what}"
+            err = rubric("decode", self.path / name)[2]
+            self.assertEqual((err.count(hint), err.count(f"--link-type {link}=radio-fcs")), (1, 1))
+            code, out, err = rubric("decode", self.path / name, "--format", "jsonl", "--link-type",
+                                    f"{link}=radio-fcs")
+            self.assertEqual((code, len(out.splitlines())), (0, 60))
+            self.assertNotIn("sound as", err)
+        ours = self.path / "ours.pcap"
+        active = b"\0\xff\xff\0\0\4\x22\6\0\2\0\1"
+        ours.write_bytes(pcap(148, [active, bytes([9]) + active]))
+        self.assertNotIn("sound as", rubric("decode", ours)[2])
+
+    def test_zep_on_other_ports_and_loopbacks_of_bsd(self):
+        loops = {0: b"\2\0\0\0", 108: b"\0\0\0\2"}
+        ack = b"EX\x02\x02" + struct.pack(">I", 1)
+        hello = b"EX\x02\xff" + bytes(27) + b"\x08" + bytes(8)
+        for link, family in loops.items():
+            path = self.path / f"loop{link}.pcap"
+            path.write_bytes(pcap(link, [family + ipv4(udp(one, port)) for one, port in
+                                         ((zep(1), ZEP_PORT), (zep(2), 17755), (ack, ZEP_PORT),
+                                          (hello, 17755), (b"query", 53), (b"EX", 17755))]))
+            code, out, err = rubric("decode", path, "--format", "jsonl")
+            self.assertEqual((code, [json.loads(line)["raw"] for line in out.splitlines()]),
+                             (0, [frame(1).hex(), frame(2).hex()]), err)
+            self.assertIn("1 of 6 packets are ZEP acks, which hold no radio frame", err)
+            self.assertIn("1 of 6 packets are ZEP hellos of RIOT's nodes, which hold no", err)
+            self.assertIn("2 of 6 packets are not ZEP packets", err)
 
     def test_a_snap_length_is_no_fault_of_the_sender(self):
         frames, _ = self.frames("short.pcap")
@@ -392,6 +425,26 @@ class Text(ProgramTest):
         self.assertEqual((code, len(out.splitlines())), (0, 1), err)
         self.assertIn("3 of its lines hold no packet; the first is line 2; line 3 has hex text "
                       "after 'mote1>', which is not a known time stamp", err)
+
+    def test_stamps_of_lines_are_times(self):
+        for stamps, times in ((("12:03:04.567", "12:03:05.067"), (43384.567, 43385.067)),
+                              (("[123.456]", "[123.5567]"), (123.456, 123.5567)),
+                              (("1690000000.123", "1690000001.123"),
+                               (1690000000.123, 1690000001.123)),
+                              (("12:03:04", "12:03:05"), (None, None))):
+            for line in (self.BLINK, self.SERIAL):
+                code, out, err = self.decoded("".join(f"{one} {line}\n" for one in stamps),
+                                              "--format", "jsonl")
+                self.assertEqual((code, err), (0, ""))
+                self.assertEqual(tuple(json.loads(one)["time"] for one in out.splitlines()), times)
+
+    def test_marks_of_received_bytes_are_said_once(self):
+        for mark in ("rx", "RX:", "<-"):
+            code, out, err = self.decoded(f"{mark} {self.BLINK}\n1.001 {mark} {self.SERIAL}\n",
+                                          "--format", "jsonl")
+            self.assertEqual((code, len(out.splitlines())), (0, 2), err)
+            self.assertEqual(err, f"rubric: stdin: '{mark}' before the bytes of its lines is "
+                                  "passed over\n")
 
     def test_mistakes_name_their_line(self):
         for text, where in ((f"{self.BLINK}\n# so far\n00 FF F\n", "line 3, character 8"),

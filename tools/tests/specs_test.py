@@ -235,7 +235,7 @@ class Several(Folder):
 
     def test_generated_frames_decode_as_expected(self):
         for both in ("rubicon,blink_to_radio,ctp", "blink_to_radio,rubicon", "ctp,printf"):
-            made = rubric("generate", "--spec", both, "--count", "150", "--valid", "0.5").stdout
+            made = rubric("generate", "--spec", both, "--count", "200", "--valid", "0.5").stdout
             made = [json.loads(x) for x in made.splitlines()]
             serial = [x for x in made if x["carrier"] == "serial"]
             done = rubric("decode", "--spec", both, "--format", "jsonl",

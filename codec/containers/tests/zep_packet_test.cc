@@ -7,6 +7,7 @@
 
 #include "codec/containers/crc16_fast.h"
 #include "codec/containers/link_record.h"
+#include "codec/runtime/crc16.h"
 
 namespace rubric {
 namespace {
@@ -92,6 +93,18 @@ TEST(Zep, AFrameIsReadWithItsFcs) {
   EXPECT_EQ(packet.error.fault, Fault::kFcs);
 }
 
+TEST(Zep, TheCheckSumOfRiotsNativeBoardsIsNoFcs) {
+  std::string datagram = sound_datagram();
+  const std::size_t end = datagram.size() - 2;
+  const std::uint16_t sum = crc16(as_bytes(datagram).first(end).from(32));
+  store_le16(reinterpret_cast<std::uint8_t*>(datagram.data()) + end, sum);
+  Packet packet;
+  ASSERT_TRUE(decode_zep_datagram(as_bytes(datagram), packet));
+  EXPECT_EQ(packet.error.fault, Fault::kNone);
+  EXPECT_EQ(packet.fcs, kAbsent);
+  EXPECT_EQ(packet.bytes.size(), 12u);
+}
+
 // With CRC mode 0 the last bytes are RSSI, and the chip's verdict of the check sum.
 TEST(Zep, AChipsVerdictStandsForTheFcs) {
   std::string datagram = sound_datagram();
@@ -172,6 +185,9 @@ TEST(ZepOverUdp, IsFoundBehindEveryLinkHeader) {
       {kLinkEthernet, macs + "\x81" + std::string("\0\0\5\x08\0", 5) + v4},
       {kLinkSll, std::string(14, '\0') + std::string("\x08\0", 2) + v4},
       {kLinkSll2, std::string("\x08\0", 2) + std::string(18, '\0') + v4},
+      {kLinkNull, std::string("\2\0\0\0", 4) + v4},
+      {kLinkLoop, std::string("\0\0\0\x1E", 4) + ipv6(udp(sound_datagram()), false)},
+      {kLinkRawIp, ipv4(udp(sound_datagram(), 17755))},
   };
   for (const auto& row : kRecords) {
     Packet packet;
@@ -204,13 +220,44 @@ TEST(ZepOverUdp, WhatIsNoneIsLeftAlone) {
   std::string tcp = ipv4(udp(datagram));
   tcp[9] = 6;
   for (const std::string& record :
-       {ipv4(udp(datagram, 53)), ipv4(udp(datagram), 0x2000), ipv4(udp(datagram), 3), tcp,
+       {ipv4(udp("query", 53)), ipv4(udp(datagram), 0x2000), ipv4(udp(datagram), 3), tcp,
         std::string("\x45"), std::string()}) {
     Packet packet;
     decode_record(as_bytes(record), record.size(), kLinkRawIp, "WIRE-PCAP"_rule, packet);
     EXPECT_EQ(packet.error, fail(Fault::kUnsupported, 0, "WIRE-PCAP"_rule).error);
     EXPECT_EQ(packet.link_type, kLinkRawIp);
     EXPECT_EQ(packet.offset_bytes, 0u);
+  }
+}
+
+// On another port all of the datagram has to be a ZEP packet.
+TEST(ZepOverUdp, OnOtherPortsIsFoundByItsForm) {
+  std::string cut = sound_datagram();
+  cut.pop_back();
+  std::string kind = sound_datagram();
+  kind[3] = 9;
+  for (const std::string& datagram : {cut, kind, sound_datagram() + "x", std::string("EX\2\2")}) {
+    const std::string record = ipv4(udp(datagram, 17755));
+    Packet packet;
+    decode_record(as_bytes(record), record.size(), kLinkRawIp, "WIRE-PCAP"_rule, packet);
+    EXPECT_EQ(packet.error, fail(Fault::kUnsupported, 0, "WIRE-PCAP"_rule).error);
+    EXPECT_EQ(packet.link_type, kLinkRawIp);
+  }
+}
+
+TEST(ZepOverUdp, APacketWithoutFrameIsNamed) {
+  std::string hello = sound_datagram();
+  hello[3] = '\xFF';
+  for (const std::uint16_t port : {kZepPort, std::uint16_t{17755}}) {
+    for (const auto& [datagram, kind] : {std::pair(std::string("EX\2\2\0\0\0\1", 8), kLinkZepAck),
+                                         std::pair(hello, kLinkZepHello)}) {
+      const std::string record = std::string(4, '\0') + ipv4(udp(datagram, port));
+      Packet packet;
+      decode_record(as_bytes(record), record.size(), kLinkNull, "WIRE-PCAP"_rule, packet);
+      EXPECT_EQ(packet.error, fail(Fault::kUnsupported, 0, "WIRE-PCAP"_rule).error);
+      EXPECT_EQ(packet.framing, Framing::kBare);
+      EXPECT_EQ(packet.link_type, kind);
+    }
   }
 }
 

@@ -19,11 +19,12 @@ void check_bytes(Check& check, Field& field) {
               "type, size, size-eos or contents was expected");
 }
 
-/// Text and bits are read at run time alone.
+/// Text and bits are read at run time alone; a dissector shows text whose size is known before it.
 void check_plain(Check& check, const Field& field) {
   if (check.at_run_time) return;
   const SourcePlace& place = place_of(field.places, "type", field.place);
-  if (field.text) {
+  const bool shown = !check.for_code && field.extent != ExtentKind::kTerminated;
+  if (field.text && !shown) {
     check.error(place, fmt::format("text or a terminator in {}", quote(field.id)),
                 "bytes were expected; rubric --spec reads text");
   }

@@ -61,5 +61,8 @@ types:
     -am-type: 100
     seq:
       - id: buffer
+        type: str
         size-eos: true
+        encoding: UTF-8
+        pad-right: 0
         doc: Characters, filled up with zeros.

@@ -560,6 +560,40 @@ function Decoder:is_allowed(field, value, at)
   return self:fail(field.min and "out_of_range" or "unexpected", at, field, text)
 end
 
+-- The length of the character that begins there; nil if none does (RFC 3629, section 4).
+local function character_at(text, at, encoding)
+  local lead, second = text:byte(at, at + 1)
+  if lead < 0x80 then return 1 end
+  if encoding == "ASCII" or lead < 0xc2 or lead > 0xf4 or not second then return nil end
+  local length = lead < 0xe0 and 2 or lead < 0xf0 and 3 or 4
+  local low = lead == 0xe0 and 0xa0 or lead == 0xf0 and 0x90 or 0x80
+  local high = lead == 0xed and 0x9f or lead == 0xf4 and 0x8f or 0xbf
+  local rest = text:sub(at + 2, at + length - 1)
+  local sound = second >= low and second <= high and #rest == length - 2 and
+      not rest:find("[^\128-\191]")
+  return sound and length or nil
+end
+
+-- The text of such a field, with U+FFFD for bytes that are none; where the first of these is; and
+-- whether it says all, so that only its end and its padding follow.
+local function text_of(field, bytes)
+  local size = #bytes
+  while size > 0 and bytes:byte(size) == field.padding do size = size - 1 end
+  local stop = field.terminator and bytes:find(string.char(field.terminator), 1, true)
+  local text = bytes:sub(1, math.min(size, stop and stop - 1 or size))
+  local parts, at, wrong = {}, 1, nil
+  while at <= #text do
+    local length = character_at(text, at, field.text)
+    wrong = wrong or not length and at - 1 or nil
+    parts[#parts + 1] = length and text:sub(at, at + length - 1) or "\239\191\189"
+    at = at + (length or 1)
+  end
+  local last = field.terminator and #text < #bytes and string.char(field.terminator) or ""
+  local fill = (field.terminator or field.padding) and string.char(field.padding or 0) or ""
+  local again = text .. last .. fill:rep(#bytes - #text - #last)
+  return table.concat(parts), wrong, not wrong and again == bytes
+end
+
 -- The functions below return whether all is well and where the next field begins.
 
 function Decoder:truncated(parent, field, at, limit, needed)
@@ -660,6 +694,15 @@ function Decoder:other(parent, field, base, at, limit)
   if field.repeated then return self:array(parent, field, base, at, last) end
   if field.kind == "bytes" then
     add(parent, "bytes", field, at, last - at)
+    if field.text then
+      local bytes = self.bytes:sub(at + 1, last)
+      local wrong = select(2, text_of(field, bytes))
+      if wrong then
+        self:note("not_text", at + wrong, string.format("%s is not %s, it has the byte %d",
+                                                        field.name, field.text,
+                                                        bytes:byte(wrong + 1)))
+      end
+    end
     return true, last
   end
   return self:nested(parent, field, base, at, last, limit)
@@ -866,6 +909,10 @@ local function define_field(field, prefix)
       return ProtoField.none(abbreviation, field.name, field.doc)
     end)
     for _, one in ipairs(types[field.type]) do define_field(one, abbreviation) end
+  elseif field.text then
+    define(abbreviation, function()
+      return ProtoField.string(abbreviation, field.name, base.UNICODE, field.doc)
+    end)
   else
     define(abbreviation, function()
       return ProtoField.bytes(abbreviation, field.name, base.SPACE, field.doc)
@@ -978,8 +1025,13 @@ show = function(tree, node, prefix, view)
     if node.size > 0 then
       -- What is left of numbers that were cut off is no number.
       local whole = field.kind == "bytes" or field.cases
-      tree:add(fields[whole and abbreviation or "rubric.cut_off"],
-               range_of(view, node.offset, node.size))
+      local range = range_of(view, node.offset, node.size)
+      local shown = fields[whole and abbreviation or "rubric.cut_off"]
+      if field.text then
+        tree:add(shown, range, (text_of(field, range:raw())))
+      else
+        tree:add(shown, range)
+      end
     end
   elseif node.kind == "structs" then
     for _, child in ipairs(node) do
@@ -1007,6 +1059,14 @@ local function hex_text(bytes)
     return string.format("%02x", c:byte())
   end)
   return #bytes > HEX_MOST and text .. "..(" .. #bytes .. " bytes)" or text
+end
+
+-- In quotes; bytes of which it does not say all follow in hex.
+local function quoted_text(field, bytes)
+  local text, _, all = text_of(field, bytes)
+  local escapes = {['"'] = '\\"', ["\\"] = "\\\\", ["\n"] = "\\n", ["\r"] = "\\r", ["\t"] = "\\t"}
+  text = '"' .. text:gsub('[%c"\\]', function(c) return escapes[c] or "\239\191\189" end) .. '"'
+  return all and text or text .. " (" .. hex_text(bytes) .. ")"
 end
 
 local function mask_text(field, value)
@@ -1060,7 +1120,8 @@ end
 function Decoder:value_text(node)
   if node.kind == "number" then return number_text(node.field, node.value) end
   if node.kind == "bytes" then
-    return hex_text(self.bytes:sub(node.offset + 1, node.offset + node.size))
+    local bytes = self.bytes:sub(node.offset + 1, node.offset + node.size)
+    return node.field.text and quoted_text(node.field, bytes) or hex_text(bytes)
   end
   if node.kind == "struct" then return structure_text(self, node) end
   local parts = {}

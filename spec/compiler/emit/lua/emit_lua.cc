@@ -151,6 +151,13 @@ std::string field_text(const Field& field) {
   entry.add_function("size", field.size);
   entry.add_function("count", field.count);
   entry.add_function("condition", field.condition);
+  if (field.text && field.text->encoding != Encoding::kNone) {
+    entry.add_text("text", field.text->encoding == Encoding::kAscii ? "ASCII" : "UTF-8");
+    if (field.text->terminator >= 0) {
+      entry.add("terminator", std::to_string(field.text->terminator));
+    }
+    if (field.text->padding >= 0) entry.add("padding", std::to_string(field.text->padding));
+  }
   if (field.unit) {
     entry.add_text("unit", field.unit->symbol);
     entry.add("scale", fmt::format("{}", field.unit->scale));

@@ -3,7 +3,7 @@
 const assert = require('node:assert');
 const fs = require('node:fs');
 const path = require('node:path');
-const { kFailing } = require('./views.js');
+const { kFailing, views } = require('./views.js');
 
 const texts = (page, selector) => page.locator(selector).allTextContents();
 const rows = (page) => page.locator('#matrix tbody tr').count();
@@ -270,12 +270,27 @@ async function nowhere(page, go) {
   assert.ok(await rows(page) >= 500);
 }
 
+// Expects every view, with all of it unfolded, to be no wider than the screen; what is wider
+// scrolls in a box of its own.
 async function narrow(page, go) {
-  for (const hash of ['#/cases', '#/rules', '#/figures', '#/run', kFailing]) {
+  for (const [name, hash, prepare] of views) {
     await go(hash);
+    if (prepare) await prepare(page);
+    const folded = 'details:not([open])';
+    while (await page.locator(folded).count()) {  // What is unfolded may hold more.
+      await page.evaluate((one) => document.querySelectorAll(one).forEach((details) => {
+        details.open = true;
+      }), folded);
+      await page.evaluate(() => new Promise((done) => requestAnimationFrame(done)));
+    }
+    const sticking = await page.evaluate(() => [...document.querySelectorAll('main *')]
+      .filter((one) => one.getBoundingClientRect().right > innerWidth + 1
+        && !one.parentElement.closest('.scroll, .chart-frame, pre, .bar, .target'))
+      .map((one) => one.outerHTML.slice(0, 90)).slice(0, 5));
+    assert.deepStrictEqual(sticking, [], name);
     const [wide, window_] = await page.evaluate(() =>
       [document.documentElement.scrollWidth, innerWidth]);
-    assert.ok(wide <= window_, `${hash} is ${wide} wide`);
+    assert.ok(wide <= window_, `${name} is ${wide} wide`);
   }
 }
 

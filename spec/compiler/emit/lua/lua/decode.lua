@@ -86,6 +86,40 @@ function Decoder:is_allowed(field, value, at)
   return self:fail(field.min and "out_of_range" or "unexpected", at, field, text)
 end
 
+-- The length of the character that begins there; nil if none does (RFC 3629, section 4).
+local function character_at(text, at, encoding)
+  local lead, second = text:byte(at, at + 1)
+  if lead < 0x80 then return 1 end
+  if encoding == "ASCII" or lead < 0xc2 or lead > 0xf4 or not second then return nil end
+  local length = lead < 0xe0 and 2 or lead < 0xf0 and 3 or 4
+  local low = lead == 0xe0 and 0xa0 or lead == 0xf0 and 0x90 or 0x80
+  local high = lead == 0xed and 0x9f or lead == 0xf4 and 0x8f or 0xbf
+  local rest = text:sub(at + 2, at + length - 1)
+  local sound = second >= low and second <= high and #rest == length - 2 and
+      not rest:find("[^\128-\191]")
+  return sound and length or nil
+end
+
+-- The text of such a field, with U+FFFD for bytes that are none; where the first of these is; and
+-- whether it says all, so that only its end and its padding follow.
+local function text_of(field, bytes)
+  local size = #bytes
+  while size > 0 and bytes:byte(size) == field.padding do size = size - 1 end
+  local stop = field.terminator and bytes:find(string.char(field.terminator), 1, true)
+  local text = bytes:sub(1, math.min(size, stop and stop - 1 or size))
+  local parts, at, wrong = {}, 1, nil
+  while at <= #text do
+    local length = character_at(text, at, field.text)
+    wrong = wrong or not length and at - 1 or nil
+    parts[#parts + 1] = length and text:sub(at, at + length - 1) or "\239\191\189"
+    at = at + (length or 1)
+  end
+  local last = field.terminator and #text < #bytes and string.char(field.terminator) or ""
+  local fill = (field.terminator or field.padding) and string.char(field.padding or 0) or ""
+  local again = text .. last .. fill:rep(#bytes - #text - #last)
+  return table.concat(parts), wrong, not wrong and again == bytes
+end
+
 -- The functions below return whether all is well and where the next field begins.
 
 function Decoder:truncated(parent, field, at, limit, needed)
@@ -186,6 +220,15 @@ function Decoder:other(parent, field, base, at, limit)
   if field.repeated then return self:array(parent, field, base, at, last) end
   if field.kind == "bytes" then
     add(parent, "bytes", field, at, last - at)
+    if field.text then
+      local bytes = self.bytes:sub(at + 1, last)
+      local wrong = select(2, text_of(field, bytes))
+      if wrong then
+        self:note("not_text", at + wrong, string.format("%s is not %s, it has the byte %d",
+                                                        field.name, field.text,
+                                                        bytes:byte(wrong + 1)))
+      end
+    end
     return true, last
   end
   return self:nested(parent, field, base, at, last, limit)

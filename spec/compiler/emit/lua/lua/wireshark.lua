@@ -75,6 +75,10 @@ local function define_field(field, prefix)
       return ProtoField.none(abbreviation, field.name, field.doc)
     end)
     for _, one in ipairs(types[field.type]) do define_field(one, abbreviation) end
+  elseif field.text then
+    define(abbreviation, function()
+      return ProtoField.string(abbreviation, field.name, base.UNICODE, field.doc)
+    end)
   else
     define(abbreviation, function()
       return ProtoField.bytes(abbreviation, field.name, base.SPACE, field.doc)
@@ -187,8 +191,13 @@ show = function(tree, node, prefix, view)
     if node.size > 0 then
       -- What is left of numbers that were cut off is no number.
       local whole = field.kind == "bytes" or field.cases
-      tree:add(fields[whole and abbreviation or "rubric.cut_off"],
-               range_of(view, node.offset, node.size))
+      local range = range_of(view, node.offset, node.size)
+      local shown = fields[whole and abbreviation or "rubric.cut_off"]
+      if field.text then
+        tree:add(shown, range, (text_of(field, range:raw())))
+      else
+        tree:add(shown, range)
+      end
     end
   elseif node.kind == "structs" then
     for _, child in ipairs(node) do
@@ -216,6 +225,14 @@ local function hex_text(bytes)
     return string.format("%02x", c:byte())
   end)
   return #bytes > HEX_MOST and text .. "..(" .. #bytes .. " bytes)" or text
+end
+
+-- In quotes; bytes of which it does not say all follow in hex.
+local function quoted_text(field, bytes)
+  local text, _, all = text_of(field, bytes)
+  local escapes = {['"'] = '\\"', ["\\"] = "\\\\", ["\n"] = "\\n", ["\r"] = "\\r", ["\t"] = "\\t"}
+  text = '"' .. text:gsub('[%c"\\]', function(c) return escapes[c] or "\239\191\189" end) .. '"'
+  return all and text or text .. " (" .. hex_text(bytes) .. ")"
 end
 
 local function mask_text(field, value)
@@ -269,7 +286,8 @@ end
 function Decoder:value_text(node)
   if node.kind == "number" then return number_text(node.field, node.value) end
   if node.kind == "bytes" then
-    return hex_text(self.bytes:sub(node.offset + 1, node.offset + node.size))
+    local bytes = self.bytes:sub(node.offset + 1, node.offset + node.size)
+    return node.field.text and quoted_text(node.field, bytes) or hex_text(bytes)
   end
   if node.kind == "struct" then return structure_text(self, node) end
   local parts = {}
