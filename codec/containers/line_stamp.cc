@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <chrono>
 
 #include "codec/containers/hex_reader.h"
 
@@ -174,14 +175,6 @@ class TimeText {
   std::string_view rest_;
 };
 
-// Returns the days from 1970 to a date of our calendar (its era is of 400 years).
-std::int64_t days_of(std::int64_t year, std::int64_t month, std::int64_t day) {
-  const std::int64_t y = year - (month <= 2);
-  const std::int64_t of_year = (153 * (month + (month > 2 ? -3 : 9)) + 2) / 5 + day - 1;
-  constexpr std::int64_t kTo1970 = 719'468;
-  return 365 * y + y / 4 - y / 100 + y / 400 + of_year - kTo1970;
-}
-
 // Takes a date that leaves nothing open: 2026-11-24, 2026/11/24, 24.11.2026 or Nov 24 2026.
 bool take_date(TimeText& text, std::int64_t& days) {
   std::int64_t year = 0;
@@ -208,9 +201,11 @@ bool take_date(TimeText& text, std::int64_t& days) {
     return has_day && text.number(4, 4, year);
   };
   if (!year_first('-') && !year_first('/') && !day_first() && !named()) return false;
-  if (month < 1 || month > 12 || day < 1 || day > 31) return false;
-  days = days_of(year, month, day);
-  return true;
+  const std::chrono::year_month_day date(std::chrono::year(static_cast<int>(year)),
+                                         std::chrono::month(static_cast<unsigned>(month)),
+                                         std::chrono::day(static_cast<unsigned>(day)));
+  days = std::chrono::sys_days(date).time_since_epoch().count();
+  return date.ok();
 }
 
 // Takes a time of day with decimals, as 13:55:05.123 or 1:55:05,123 PM.
