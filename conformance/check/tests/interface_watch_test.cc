@@ -68,6 +68,17 @@ TEST(AckSender, CountsFromTheDestinationWithItsAppid) {
   EXPECT_EQ(all(acked("x000b0002000b000700001106090617007700")), "T3-SENDER");
 }
 
+TEST(InterfaceWatch, OffHearsNoAck) {
+  const std::string ack = m2(900, "< rA am=7->2 am(28 x000b0002000b000700001106090517007700)");
+  const std::string sent = m2(500, "< app send(dest=11:7 app_id=5 reliable=1 data=xbeef)") +
+                           m2(500, "> app send_result(seq_num=119)") +
+                           m2(501, "> rA am=2->7 am(28 x000b0007000b0002010077040305beef)");
+  const std::string off = m2(600, "< app interface(radio off)");
+  const std::string failed = m2(1500, "> app ack_received(app_id=5 seq_num=119 result=fail)");
+  EXPECT_EQ(all(sent + off + ack + failed), "");
+  EXPECT_EQ(all(sent + ack + failed), "T3-SUCCESS");
+}
+
 // Mote 3 asks and is answered; its ack_join is this.
 std::string admitted(const std::string& addresses) {
   const std::string request =
