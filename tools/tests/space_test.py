@@ -9,6 +9,7 @@ import json
 import os
 import pwd
 import re
+import signal
 import socket
 import ssl
 import struct
@@ -366,6 +367,24 @@ class Space(LiveTest):
         dropped = sum(map(int, drops))
         self.assertEqual(came + dropped, count, said)
         self.assertGreater(came, 200)
+
+    def test_goodbyes_to_a_broker_that_hangs(self):
+        """Those of several islands take as long as that of one."""
+        def ends(count):
+            islands = "".join(f'  - {{island: {11 + one}, radio: "zep:0"}}\n'
+                              for one in range(count))
+            plan = self.write(f"{count}.yaml", f"islands:\n{islands}")
+            run = self.started(plan, "--space", self.broker.url, env={**os.environ, **USER})
+            for _ in range(count):
+                run.waits_for(rb"(mqtt://\S+: connected)")
+            self.broker.process.send_signal(signal.SIGSTOP)
+            begun = time.monotonic()
+            code, _, err = run.end()
+            self.broker.process.send_signal(signal.SIGCONT)
+            self.assertEqual(code, 0, err)
+            return time.monotonic() - begun
+
+        self.assertLess(ends(4), ends(1) + 2)
 
     def test_a_wish_that_stays_is_refused(self):
         """It is one like any other for who is there, and is refused at each start."""

@@ -118,6 +118,7 @@ class Islands {
     for (std::thread& thread : threads) thread.join();
     end_applications();
     events_->finish(std::chrono::steady_clock::now() + kLastWords);
+    say_goodbyes();
     // Motes first, then what they talk to.
     while (!inhabitants_.empty()) inhabitants_.pop_back();
     if (!fault_.empty()) throw lines::Broken(fault_);
@@ -135,6 +136,14 @@ class Islands {
         std::this_thread::sleep_for(kLinkPoll);
       }
     }
+  }
+  // At the same time, as each may wait for a broker that does not answer.
+  void say_goodbyes() {
+    std::deque<std::thread> threads;
+    for (const auto& inhabitant : inhabitants_) {
+      if (inhabitant->gateway) threads.emplace_back([&] { inhabitant->gateway.reset(); });
+    }
+    for (std::thread& thread : threads) thread.join();
   }
   // All of them have the same time.
   void end_applications() {
