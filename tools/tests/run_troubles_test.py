@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""`rubric run` where nodes send too much or meet others at their places.
+"""`rubric run` where nodes are not heard, send too much, or meet others at their places.
 
 Usage: run_troubles_test.py RUBRIC. All of it on this host's loopback.
 """
@@ -9,9 +9,32 @@ import time
 import unittest
 
 from run_test import IslandTest
+from testing import ROOT
 
 
 class Troubles(IslandTest):
+    def test_a_mote_that_its_base_station_does_not_hear_is_there(self):
+        """One sends to its sink alone, one sends nothing; both are asked (decision 124)."""
+        robot = ROOT / "conformance/node/examples/robot.py"
+        run = self.started(self.write("islands.yaml", f"""
+islands:
+  - island: 11
+    radio: zep:0
+    sink_app: python3 {robot} watch 11:8
+    motes:
+      - {{id: 6}}
+      - {{id: 8, app: python3 {robot} drive}}
+"""), "--gone-after", "4", "--log", self.folder / "run.rtr")
+        for _ in range(2):
+            run.event("mote_joined", node="sink11")
+        time.sleep(9)
+        code, out, err = run.end()
+        self.assertEqual(code, 0, err)
+        self.assertNotIn("mote_left", run.read.decode() + out)
+        # The answer is nobody else's business.
+        self.assertNotIn("ack_received", run.read.decode() + out)
+        self.passes(self.folder / "run.rtr")
+
     def test_a_sink_says_what_it_drops(self):
         sink, base, air = self.island(self.folder / "run.pcapng")
         mote = self.started("mote", "--id", "5", "--radio", air)

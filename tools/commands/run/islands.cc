@@ -19,6 +19,7 @@
 #include "conformance/test/targets/process.h"
 #include "tools/commands/run/json_application.h"
 #include "tools/commands/run/mote_application.h"
+#include "tools/commands/run/roll_call.h"
 #include "tools/commands/run/station.h"
 #include "tools/commands/space/gateway.h"
 #include "tools/commands/space/memory_space.h"
@@ -170,6 +171,10 @@ class Islands {
       base.gateway = gateway_of(island.island);
       base.station->add(*base.gateway);
       base.station->join_peers(*base.gateway);
+      if (ecology_.gone_after_s != 0) {
+        base.station->add(*base.applications.emplace_back(std::make_unique<RollCall>(
+            island.island, std::chrono::seconds(ecology_.gone_after_s))));
+      }
     }
     for (const EcologyMote& mote : island.motes) {
       StationSetup setup = plan.mote(island, mote);

@@ -196,6 +196,9 @@ void Station::happened(const machine::Notice& notice) {
     text::print(stderr, "rubric: {}: its list is full with {} motes: it answers no other\n",
                 setup_.name, full);
   }
+  for (run::Application* application : applications_) {
+    if (application->takes(notice)) return;
+  }
   for (run::Application* application : applications_) application->happened(notice, *this);
 }
 
