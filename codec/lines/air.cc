@@ -18,6 +18,7 @@ namespace {
 using std::chrono::steady_clock;
 
 constexpr Milliseconds kGreetEvery{500};
+constexpr Milliseconds kHubAnswersIn{2000};
 constexpr std::size_t kPeersMax = 256;
 constexpr std::size_t kDatagramMax = 65'535;
 constexpr std::size_t kArrivedMax = 64;  // A flood is not sorted for ever.
@@ -53,15 +54,27 @@ void Air::open() {
   if (!elsewhere || ::connect(socket_.get(), address.get(), address.size_bytes) != 0) {
     throw Broken(fmt::format("zep:{}:{}: {}", at_.host, at_.port, std::strerror(errno)));
   }
+  met_ = steady_clock::now();
+  is_answered_ = false;
   greet();
 }
 
-// Makes the hub know this end, which may never send a frame, and shows whether the hub is there.
-void Air::greet() {
+bool Air::is_unanswered() const {
+  return !is_hub_ && !is_answered_ && steady_clock::now() - met_ > kHubAnswersIn;
+}
+
+std::string Air::greeting() {
   ZepPacket ack;
   ack.type = ZepPacket::Type::kAck;
   std::string datagram;
   append_zep(ack, datagram);
+  return datagram;
+}
+
+// Makes the hub know this end, which may never send a frame, and shows whether the hub is there,
+// which greets in return.
+void Air::greet() {
+  const std::string datagram = greeting();
   next_greeting_ = steady_clock::now() + kGreetEvery;
   ::send(socket_.get(), datagram.data(), datagram.size(), MSG_NOSIGNAL);
 }
@@ -119,7 +132,14 @@ int Air::take_arrived() {
     const Bytes datagram(room_.data(), static_cast<std::size_t>(size));
     if (is_hub_) note(from);
     const Result<ZepPacket> zep = parse_zep(datagram);
-    if (size == 0 || (zep && zep->type == ZepPacket::Type::kAck)) continue;  // A greeting.
+    is_answered_ = true;
+    const bool greets = zep && zep->type == ZepPacket::Type::kAck;
+    if (greets && is_hub_) {
+      const std::string answer = greeting();
+      ::sendto(socket_.get(), answer.data(), answer.size(), MSG_NOSIGNAL, from.get(),
+               from.size_bytes);
+    }
+    if (size == 0 || greets) continue;
     const std::int64_t time_ns = air_time_ns(zep ? zep->time_ns : kNoTime);
     const auto later = std::upper_bound(
         arrived_.begin(), arrived_.end(), time_ns,

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <string>
 #include <vector>
 
 #include "codec/lines/address.h"
@@ -24,6 +25,9 @@ class Air {
   void close() { socket_.close(); }
   /// Returns the port, also after port 0.
   std::uint16_t port() const { return at_.port; }
+  /// Returns whether the port is held by a program that is no hub: it has not answered for two
+  /// seconds.
+  bool is_unanswered() const;
 
   /// Sends a datagram to all others; throws Broken.
   void send(Bytes datagram);
@@ -44,6 +48,7 @@ class Air {
     SocketAddress from;
     std::vector<std::uint8_t> bytes;
   };
+  static std::string greeting();
   void greet();
   int take_arrived();
   void relay(Bytes datagram, const SocketAddress* from);
@@ -54,6 +59,8 @@ class Air {
   bool is_hub_ = false;
   std::vector<Peer> peers_;  // Of a hub.
   SteadyTime next_greeting_;
+  SteadyTime met_;  // When a hub was looked for.
+  bool is_answered_ = false;
   std::vector<std::uint8_t> room_;
   std::deque<Arrived> arrived_;  // By time.
   std::vector<std::uint8_t> current_;

@@ -113,6 +113,8 @@ class Node {
   /// Return how many motes a sink lists, and whether no other fits.
   uint8_t members() const { return admissions_.members(); }
   bool list_is_full() const { return admissions_.is_full(); }
+  /// Returns whether the line's outgoing buffer takes no more, so that what is sent there is lost.
+  bool is_full(Line line) const { return at(line).out_ring.count == at(line).out_ring.room; }
   /// Takes a mote that has left off a sink's list, as no message says goodbye; see silence.h.
   /// Returns false while its report to the base station is owed.
   bool forget(uint16_t devid) { return admissions_.forget(devid); }

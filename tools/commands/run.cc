@@ -27,6 +27,7 @@
 #include "tools/commands/run/line_output.h"
 #include "tools/commands/run/mote_application.h"
 #include "tools/commands/run/names.h"
+#include "tools/commands/run/roll_call.h"
 #include "tools/commands/run/station.h"
 #include "tools/commands/space/gateway.h"
 #include "tools/commands/space/mqtt_space.h"
@@ -161,6 +162,11 @@ int run_station(const RunOptions& options) {
   std::optional<run::MoteApplication> mote;
   if (options.is_mote() && !calls) {
     station.add(mote.emplace(options.descriptor(), options.app == "demo"));
+  }
+  // The proxy asks for readings, and knows which motes were asked to be silent.
+  std::optional<run::RollCall> roll_call;
+  if (options.role == "base-station" && options.gone_after_s != 0) {
+    station.add(roll_call.emplace(setup.island, std::chrono::seconds(options.gone_after_s)));
   }
   std::unique_ptr<space::Gateway> gateway;
   if (!options.space.empty()) {
@@ -433,7 +439,8 @@ void add_run(cli::Command& app) {
   sub.add_option(
          "--gone-after", options->gone_after_s,
          "Report mote_left after a mote was silent for this many seconds; a sink then lets it join "
-         "anew, and in the space it is offline; 0: never")
+         "anew, and in the space it is offline. A base station asks it before, by a reliable "
+         "message without data, as it does not hear what goes to the sink; 0: never")
       .between(0, 86'400)
       .show_default();
   sub.add_option(

@@ -152,6 +152,17 @@ class Install(unittest.TestCase):
         self.assertEqual([json.loads(line)["call"] for line in said.splitlines()],
                          ["join", "send"])
 
+    def test_an_application_in_cpp(self):
+        door = self.base / "door"
+        run("c++", "-std=c++17", "-Wall", "-Wextra", "-Werror",
+            self.examples(self.prefix) / "door.cc", "-o", door)
+        knock = {"event": "received", "src": "12:65533", "app_id": 10, "data": b"OPEN_DOOR".hex()}
+        said = run(door, input=json.dumps({"event": "joined", "own": "0:5", "success": False}) +
+                   "\n" + json.dumps(knock) + "\n")
+        self.assertEqual([json.loads(line) for line in said.splitlines()][2],
+                         {"call": "send", "dest": "12:65533", "app_id": 10, "reliable": True,
+                          "data": b"DOOR_IS_OPEN".hex()})
+
     def test_the_program_alone_has_the_applications_of_the_book(self):
         """What the Debian package rubric has."""
         prefix = self.base / "tool"

@@ -170,6 +170,8 @@ class Proxy(ProxyTest):
         self.assertEqual(self.asked.next(), "watch 1/1/8 0")
         two.say(command="OPEN_DOOR", device="11:5")
         self.assertEqual(bytes.fromhex(mote.event("received")["data"]), b"OPEN_DOOR")
+        self.assertEqual(two.event("command"), {"event": "command", "device": "11:5",
+                                                "command": "OPEN_DOOR", "outcome": "done"})
         # A mote that went and came again is told anew.
         two.say(subscribe="11:5", sensors=["light"], period_ms=300)
         self.assertEqual(mote.sampling(), (300, {"light"}))
@@ -186,6 +188,11 @@ class Proxy(ProxyTest):
         client.say(subscribe="1/1/8", period_ms=20)
         self.assertEqual(client.event("reading", device="1/1/8")["data"], {"state": {"value": 0.0}})
         client.say(command="on", device="1/1/8")
+        client.event("command", command="on", outcome="sent")
+        for device, command, why in (("1/1/5", "on", "no such device"),
+                                     ("1/1/8", "ON !", "expected a word")):
+            client.say(command=command, device=device)
+            self.assertIn(why, client.event("command", device=device, outcome="refused")["text"])
         while client.event("reading", device="1/1/8")["data"] != {"state": {"value": 1.0}}:
             pass
         self.home.stdin.write(b"there 1/1/9 switch\nvalue 1/1/9 switch nan\ngone 1/1/7\n")
@@ -197,7 +204,7 @@ class Proxy(ProxyTest):
         other = Client(self, self.port)
         for wrong in ("{", "[]", '{"subscribe":5}', '{"subscribe":"1/1/8","period_ms":0}', "{}",
                       '{"subscribe":"1/1/8","sensors":["humid"]}', "x" * 5000,
-                      '{"command":"on","device":"1/1/7"}', '{"command":"ON !","device":"1/1/8"}'):
+                      '{"command":"on"}'):
             other.source.sendall(wrong.encode() + b"\n")
             while (event := json.loads(other.next()))["event"] != "error":
                 self.assertEqual(event["event"], "device")
@@ -254,6 +261,12 @@ class Alive(ProxyTest):
         self.assertEqual(mote.sampling(), (300, {"temp"}))
         self.updates(mote)
         self.assertEqual(json.loads(client.next())["event"], "reading")
+
+    def test_a_command_without_an_answer(self):
+        client = Client(self, self.port)
+        self.quiet(client).process.kill()
+        client.say(command="OPEN_DOOR", device="11:5")
+        client.event("command", command="OPEN_DOOR", outcome="no answer")
 
     def test_a_silenced_mote_that_has_gone(self):
         client = Client(self, self.port)

@@ -9,6 +9,7 @@ import json
 import os
 import pwd
 import re
+import signal
 import socket
 import ssl
 import struct
@@ -200,6 +201,7 @@ class Space(LiveTest):
         super().setUp()
         port = held_port()
         self.broker = Broker(self, port.__enter__())
+        self.sink = None  # Of the island that was begun last.
         self.addCleanup(port.__exit__, None, None, None)
 
     def island(self, number, *more, **environment):
@@ -211,6 +213,7 @@ class Space(LiveTest):
                             self.broker.url, *more, env={**os.environ, **USER, **environment})
         base.waits_for(rb"(mqtts?://\S+: connected)")
         sink.waits_for(rb"(sf-server:\d+: connected)")
+        self.sink = sink
         return base, air
 
     def mote(self, number, air, **more):
@@ -341,6 +344,47 @@ class Space(LiveTest):
         self.assertEqual(code, 0)
         self.assertIn("rubric: space: refused 11/motes/5/set: no JSON of this layout", err)
         self.assertRegex(err, r"space: refused \d+ more")
+
+    def test_a_burst_of_wishes_is_not_lost(self):
+        """A sink's radio sends fewer messages in a second than come at once. One that this host
+        holds up for a while drops a few, and says how many."""
+        subscriber = Subscriber(self, self.broker, "rubicon/11/events")
+        _, air = self.island(11)
+        mote = self.mote(5, air)
+        count = 300
+        wishes = "".join(f'{{"data":"{number:04x}","reliable":false,"id":"{number}"}}\n'
+                         for number in range(count))
+        subprocess.run([*self.broker.client("mosquitto_pub"), "-q", "1", "-t",
+                        "rubicon/11/motes/5/set", "-l"], input=wishes.encode(), check=True)
+        subscriber.event(event="sent", id=str(count - 1))
+        self.broker.publish("rubicon/11/motes/5/set", '{"data":"ff","id":"last"}')
+        subscriber.event(event="done", id="last")
+        came = 0
+        while mote.event("received")["data"] != "ff":
+            came += 1
+        said = self.sink.end()[2]
+        drops = re.findall(r"(\d+) messages from the serial line were dropped", said)
+        dropped = sum(map(int, drops))
+        self.assertEqual(came + dropped, count, said)
+        self.assertGreater(came, 200)
+
+    def test_goodbyes_to_a_broker_that_hangs(self):
+        """Those of several islands take as long as that of one."""
+        def ends(count):
+            islands = "".join(f'  - {{island: {11 + one}, radio: "zep:0"}}\n'
+                              for one in range(count))
+            plan = self.write(f"{count}.yaml", f"islands:\n{islands}")
+            run = self.started(plan, "--space", self.broker.url, env={**os.environ, **USER})
+            for _ in range(count):
+                run.waits_for(rb"(mqtt://\S+: connected)")
+            self.broker.process.send_signal(signal.SIGSTOP)
+            begun = time.monotonic()
+            code, _, err = run.end()
+            self.broker.process.send_signal(signal.SIGCONT)
+            self.assertEqual(code, 0, err)
+            return time.monotonic() - begun
+
+        self.assertLess(ends(4), ends(1) + 2)
 
     def test_a_wish_that_stays_is_refused(self):
         """It is one like any other for who is there, and is refused at each start."""

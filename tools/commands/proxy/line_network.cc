@@ -138,7 +138,8 @@ void LineNetwork::sample(const std::string& device, const Sampling& wanted) {
   write(line + '\n');
 }
 
-std::string LineNetwork::command(const std::string& device, const std::string& text) {
+std::string LineNetwork::command(const std::string& device, const std::string& text,
+                                 std::uint64_t) {
   if (!is_name(text)) return "expected a word of small letters and digits";
   write(fmt::format("command {} {}\n", device, text));
   return {};

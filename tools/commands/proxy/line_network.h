@@ -28,7 +28,8 @@ class LineNetwork final : public Network {
 
   const char* name() const override { return "lines"; }
   void sample(const std::string& device, const Sampling& wanted) override;
-  std::string command(const std::string& device, const std::string& text) override;
+  std::string command(const std::string& device, const std::string& text,
+                      std::uint64_t number) override;
   int fd() const override { return stream_.fd(); }
   lines::SteadyTime run() override;
 

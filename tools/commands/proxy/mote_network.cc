@@ -57,15 +57,14 @@ void MoteNetwork::happened(const machine::Notice& notice, run::Caller& caller) {
 
 void MoteNetwork::confirmed(const Request& request, bool success) {
   const auto found = motes_.find(request.mote);
-  if (found == motes_.end() || !found->second.there) return;
+  const bool there = found != motes_.end() && found->second.there;
+  const bool again = there && !success && request.tries < kTriesMax && send(request).empty();
+  if (!request.samples && !again) above_.answered(request.command, success);
+  if (!there || again) return;
   Member& member = found->second;
   if (success) {
     if (request.samples) member.silenced = request.silences;
-    return;
-  }
-  if (request.tries < kTriesMax) {
-    send(request);
-  } else if (member.missed) {
+  } else if (member.missed && request.tries >= kTriesMax) {
     leave(request.mote, member);
   }
 }
@@ -123,7 +122,7 @@ void MoteNetwork::sample(const std::string& device, const Sampling& wanted) {
   const std::uint32_t period =
       wanted.period_ms == 0 ? 0 : std::clamp(wanted.period_ms, kShortestMs, kLongestMs);
   const nlohmann::json wish = {{"sampling_ms", period}, {"transducers", wanted.sensors}};
-  const Request request{mote_of(device), wish.dump(), true, period == 0, 0};
+  const Request request{mote_of(device), wish.dump(), true, period == 0, 0, 0};
   if (period != 0) motes_[request.mote].silenced = false;
   unsent_.erase(request.mote);
   if (!send(request).empty()) unsent_[request.mote] = request;
@@ -137,8 +136,9 @@ lines::SteadyTime MoteNetwork::run() {
   return unsent_.empty() ? lines::SteadyTime::max() : std::chrono::steady_clock::now() + kAgain;
 }
 
-std::string MoteNetwork::command(const std::string& device, const std::string& text) {
-  return send({mote_of(device), nlohmann::json{{"command", text}}.dump(), false, false, 0});
+std::string MoteNetwork::command(const std::string& device, const std::string& text,
+                                 std::uint64_t number) {
+  return send({mote_of(device), nlohmann::json{{"command", text}}.dump(), false, false, 0, number});
 }
 
 std::string MoteNetwork::send(const Request& request) {

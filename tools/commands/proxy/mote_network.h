@@ -20,7 +20,9 @@ class MoteNetwork final : public Network {
 
   const char* name() const override { return "motes"; }
   void sample(const std::string& device, const Sampling& wanted) override;
-  std::string command(const std::string& device, const std::string& text) override;
+  std::string command(const std::string& device, const std::string& text,
+                      std::uint64_t number) override;
+  bool answers() const override { return true; }
   lines::SteadyTime run() override;
 
  private:
@@ -30,6 +32,7 @@ class MoteNetwork final : public Network {
     bool samples = false;
     bool silences = false;  // Asks for no readings.
     int tries = 0;
+    std::uint64_t command = 0;  // The caller's number.
   };
   struct Member {
     space::Mote mote;

@@ -35,6 +35,8 @@ class Above {
   /// `data` is JSON as in the tuple space: {"light":{"raw":512}}.
   virtual void read(const std::string& device, const std::string& data) = 0;
   virtual void left(const std::string& device) = 0;
+  /// Tells what became of a command that was sent.
+  virtual void answered(std::uint64_t command, bool done) = 0;
 
  protected:
   ~Above() = default;
@@ -46,8 +48,12 @@ class Network {
   virtual const char* name() const = 0;
   /// Configures the readings of a device that is there.
   virtual void sample(const std::string& device, const Sampling& wanted) = 0;
-  /// Gives a command to a device that is there. Returns why not; empty if it was sent.
-  virtual std::string command(const std::string& device, const std::string& text) = 0;
+  /// Gives a command to a device that is there, under a number of the caller's. Returns why not;
+  /// empty if it was sent.
+  virtual std::string command(const std::string& device, const std::string& text,
+                              std::uint64_t number) = 0;
+  /// Returns whether Above::answered() follows a command.
+  virtual bool answers() const { return false; }
   /// Returns the descriptor on which news come; -1: none.
   virtual int fd() const { return -1; }
   /// Takes news; returns when it wants to run next.

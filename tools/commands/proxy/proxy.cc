@@ -159,15 +159,44 @@ void Proxy::take(Client& client, const std::string& line) {
     if (!json.contains("command")) {
       throw std::invalid_argument("expected subscribe, unsubscribe or command");
     }
-    const auto known = devices_.find(text_at(json, "device"));
-    if (known == devices_.end()) throw std::invalid_argument("no such device");
-    const std::string wrong =
-        known->second.network->command(known->first, text_at(json, "command"));
-    if (!wrong.empty()) throw std::invalid_argument(wrong);
+    command(client, json);
   } catch (const std::invalid_argument& error) {
     put_error(client, error.what());
   } catch (const Json::exception& error) {
     put_error(client, fmt::format("no JSON: {}", error.what()));
+  }
+}
+
+void Proxy::command(Client& client, const Json& request) {
+  const std::string device = text_at(request, "device");
+  const std::string text = text_at(request, "command");
+  const auto known = devices_.find(device);
+  std::string wrong;
+  if (known == devices_.end()) wrong = "no such device";
+  if (client.commands.size() >= kWantsMax) wrong = "too many commands";
+  Json event = {{"event", "command"}, {"device", device}, {"command", text}};
+  const std::uint64_t number = ++commands_;
+  if (wrong.empty()) wrong = known->second.network->command(device, text, number);
+  if (!wrong.empty()) {
+    event["outcome"] = "refused";
+    event["text"] = wrong;
+  } else if (known->second.network->answers()) {
+    client.commands[number] = event;
+    return;
+  } else {
+    event["outcome"] = "sent";
+  }
+  put(client, text_of(event));
+}
+
+void Proxy::answered(std::uint64_t command, bool done) {
+  for (const auto& client : clients_) {
+    const auto found = client->commands.find(command);
+    if (found == client->commands.end()) continue;
+    Json event = std::move(found->second);
+    client->commands.erase(found);
+    event["outcome"] = done ? "done" : "no answer";
+    return put(*client, text_of(event));
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include <map>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,8 @@ namespace rubric::proxy {
 ///   {"unsubscribe":"11:5"}                                      as the end of the connection does
 ///   {"command":"open","device":"1/1/8"}
 ///
+/// A command's client gets {"event":"command","device":"11:5","command":"open","outcome":"done"},
+/// or "no answer"; "sent" where the network says no more, and "refused" with the "text" why.
 /// They get {"event":"device"}, at once for those that are there, "left", and "reading" for what
 /// they subscribed to; "awaited" for a subscription to what is not there yet, and "error" for a
 /// line that makes no sense. A device is read as often as its
@@ -38,13 +41,15 @@ class Proxy final : public run::Application, private Above {
   int fd() const override { return poll_.get(); }
 
  private:
+  using Json = nlohmann::ordered_json;
   static constexpr std::size_t kRequestMax = 4096;
 
   struct Client {
     lines::ByteStream stream;
     run::LineSplitter input{kRequestMax};
     std::string output;
-    std::map<std::string, Sampling> wants;  // By device.
+    std::map<std::string, Sampling> wants;   // By device.
+    std::map<std::uint64_t, Json> commands;  // Without an outcome yet, by number.
   };
   struct Known {
     Network* network = nullptr;
@@ -56,11 +61,13 @@ class Proxy final : public run::Application, private Above {
   void joined(const Device& device) override;
   void read(const std::string& device, const std::string& data) override;
   void left(const std::string& device) override;
+  void answered(std::uint64_t command, bool done) override;
 
   void accept();
   /// Returns whether there may be more to read.
   bool read(Client& client);
   void take(Client& client, const std::string& line);
+  void command(Client& client, const Json& request);
   void subscribe(Client& client, const std::string& device, const Sampling& wanted);
   void put_error(Client& client, const std::string& text);
   void put(Client& client, std::string line);
@@ -75,6 +82,7 @@ class Proxy final : public run::Application, private Above {
   std::vector<std::unique_ptr<Network>> networks_;
   MoteNetwork* motes_;
   Network* telling_ = nullptr;  // Which network runs.
+  std::uint64_t commands_ = 0;  // So many were given.
   int watched_ = -1;            // The descriptor of the network of lines.
   std::vector<std::unique_ptr<Client>> clients_;
   std::map<std::string, Known> devices_;

@@ -19,6 +19,7 @@
 #include "conformance/test/targets/process.h"
 #include "tools/commands/run/json_application.h"
 #include "tools/commands/run/mote_application.h"
+#include "tools/commands/run/roll_call.h"
 #include "tools/commands/run/station.h"
 #include "tools/commands/space/gateway.h"
 #include "tools/commands/space/memory_space.h"
@@ -118,6 +119,7 @@ class Islands {
     for (std::thread& thread : threads) thread.join();
     end_applications();
     events_->finish(std::chrono::steady_clock::now() + kLastWords);
+    say_goodbyes();
     // Motes first, then what they talk to.
     while (!inhabitants_.empty()) inhabitants_.pop_back();
     if (!fault_.empty()) throw lines::Broken(fault_);
@@ -135,6 +137,14 @@ class Islands {
         std::this_thread::sleep_for(kLinkPoll);
       }
     }
+  }
+  // At the same time, as each may wait for a broker that does not answer.
+  void say_goodbyes() {
+    std::deque<std::thread> threads;
+    for (const auto& inhabitant : inhabitants_) {
+      if (inhabitant->gateway) threads.emplace_back([&] { inhabitant->gateway.reset(); });
+    }
+    for (std::thread& thread : threads) thread.join();
   }
   // All of them have the same time.
   void end_applications() {
@@ -161,6 +171,10 @@ class Islands {
       base.gateway = gateway_of(island.island);
       base.station->add(*base.gateway);
       base.station->join_peers(*base.gateway);
+      if (ecology_.gone_after_s != 0) {
+        base.station->add(*base.applications.emplace_back(std::make_unique<RollCall>(
+            island.island, std::chrono::seconds(ecology_.gone_after_s))));
+      }
     }
     for (const EcologyMote& mote : island.motes) {
       StationSetup setup = plan.mote(island, mote);

@@ -39,6 +39,8 @@ class Layer {
   virtual std::uint16_t island() const = 0;
   /// Returns how many motes fill a sink's list; 0: it has room, or there is none.
   virtual std::size_t full_list() const { return 0; }
+  /// Returns how many messages of the serial line a sink has dropped, as its radio was behind.
+  virtual std::size_t dropped() const { return 0; }
 };
 
 }  // namespace rubric::run

@@ -1,5 +1,7 @@
 #include "tools/commands/run/own_layer.h"
 
+#include "codec/generated/rubicon/net_msg.h"
+#include "codec/generated/tinyos/am_header.h"
 #include "conformance/machine/messages.h"
 
 namespace rubric::run {
@@ -108,7 +110,20 @@ std::optional<node::Ticks> OwnLayer::run(node::Ticks now) {
   return runs ? std::optional(due) : std::nullopt;
 }
 
+// Returns whether a sink is to pass this on and its radio takes no more. A mote's node has no
+// memory to count in.
+bool OwnLayer::finds_no_room(node::Line line, Bytes packet) const {
+  if (role_ != node::Role::kSink || line != node::Line::kSerial) return false;
+  const auto header = tinyos::AmHeaderView::parse(packet);
+  if (!header || header->type() != node::kAmNet || !node_.is_full(node::Line::kRadio)) return false;
+  const auto message = rubicon::NetMsgView::parse(packet.from(node::kAmHeaderBytes));
+  if (!message) return false;
+  const node::Address dest = node::address_of(message->dest());
+  return dest.devid != node::kNullDevid && dest.devid != node::kSinkId;
+}
+
 void OwnLayer::received(node::Line line, Bytes packet) {
+  if (finds_no_room(line, packet)) ++dropped_;
   node_.received(line, packet);
   silence_.received(node_, role_, line, packet, now_);
 }

@@ -19,8 +19,10 @@ class OwnLayer final : public Layer, private node::Driver, private node::Applica
   bool listens() const override { return node_.interface_is_on(node::Line::kRadio); }
   std::uint16_t island() const override { return node_.address().pid; }
   std::size_t full_list() const override { return node_.list_is_full() ? node_.members() : 0; }
+  std::size_t dropped() const override { return dropped_; }
 
  private:
+  bool finds_no_room(node::Line line, Bytes packet) const;
   // node::Driver
   void transmit(node::Line line, Bytes packet, bool link_ack) override;
   // node::Application
@@ -34,6 +36,7 @@ class OwnLayer final : public Layer, private node::Driver, private node::Applica
   LayerUser& user_;
   node::Role role_;
   node::Ticks now_ = 0;
+  std::size_t dropped_ = 0;
   node::SizedNode<node::AnySizes> node_;
   node::Silence<255> silence_;
 };

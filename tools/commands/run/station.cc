@@ -24,6 +24,7 @@ using std::chrono::steady_clock;
 constexpr milliseconds kMoment{5};     // Between looks at a tuple space.
 constexpr int kPacketsMax = 64;        // Of a serial line, in a step: others want to run, too.
 constexpr milliseconds kLongest{100};  // Until a stop is seen.
+constexpr milliseconds kSayDroppedEvery{1000};
 
 // A call into the layer, also where it ends by an exception.
 class Depth {
@@ -114,9 +115,16 @@ void Station::open_radio() {
     if (setup_.keeps) keeper_.frame(packet, setup_.air_name == "rA" ? "radio" : setup_.air_name);
   };
   user.twin = [this] {
-    if (!is_mote() || warned_) return;  // All sinks have the same id.
-    text::print(stderr, "rubric: another mote on this air has the id {}, too\n", setup_.id);
-    warned_ = true;
+    if (std::exchange(warned_, true)) return;
+    if (is_mote()) {
+      text::print(stderr, "rubric: another mote on this air has the id {}, too\n", setup_.id);
+    } else {
+      text::print(
+          stderr,
+          "rubric: {}: another sink is on this air, too: a mote joins the one that it hears "
+          "first\n",
+          setup_.name);
+    }
   };
   radio_.emplace(VirtualRadio::Settings{setup_.id, setup_.loss, setup_.seed}, setup_.air,
                  std::move(user));
@@ -188,6 +196,9 @@ void Station::happened(const machine::Notice& notice) {
     text::print(stderr, "rubric: {}: its list is full with {} motes: it answers no other\n",
                 setup_.name, full);
   }
+  for (run::Application* application : applications_) {
+    if (application->takes(notice)) return;
+  }
   for (run::Application* application : applications_) application->happened(notice, *this);
 }
 
@@ -205,6 +216,8 @@ void Station::keep_serial(const std::vector<std::uint8_t>& bytes, bool inbound) 
 void Station::run(const std::function<bool()>& stop) {
   for (run::Application* application : applications_) application->start(*this);
   while (!stop() && !has_ended()) step();
+  say_dropped_ = {};
+  say_dropped();
   for (run::Application* application : applications_) application->stop(*this);
 }
 
@@ -238,6 +251,8 @@ void Station::step() {
     ::poll(inputs, 2, static_cast<int>(std::max<std::int64_t>(0, left)));
   }
   serial_waits_ = hear_serial();
+  say_dropped();
+  look_at_air();
   keeper_.settle();
 }
 
@@ -252,6 +267,29 @@ bool Station::hear_serial() {
     look_at_island();
   }
   return true;
+}
+
+// Says that another program has the port of the air.
+void Station::look_at_air() {
+  if (!radio_ || said_unanswered_ || !radio_->is_unanswered()) return;
+  said_unanswered_ = true;
+  text::print(stderr,
+              "rubric: zep:{}: the port is held by a program that does not answer as an air does "
+              "('ss -ulpn sport = {}' names it)\n",
+              radio_->port(), radio_->port());
+}
+
+// Says, at most once a second, how many messages found no room in the radio's buffer.
+void Station::say_dropped() {
+  const std::size_t dropped = layer_->dropped();
+  if (dropped == said_dropped_ || steady_clock::now() < say_dropped_) return;
+  text::print(
+      stderr,
+      "rubric: {}: {} messages from the serial line were dropped: they came faster than the "
+      "radio sends\n",
+      setup_.name, dropped - said_dropped_);
+  said_dropped_ = dropped;
+  say_dropped_ = steady_clock::now() + kSayDroppedEvery;
 }
 
 // Says that the host at a sink's serial line has another island in mind.

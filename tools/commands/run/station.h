@@ -92,6 +92,8 @@ class Station final : private LayerUser, public Caller {
   void step();
   bool hear_serial();
   void look_at_island();
+  void say_dropped();
+  void look_at_air();
   bool has_ended() const;
 
   StationSetup setup_;
@@ -107,6 +109,9 @@ class Station final : private LayerUser, public Caller {
   bool serial_waits_ = false;  // There may be more to read.
   int depth_ = 0;              // Of calls into the layer: a callback may call.
   bool warned_ = false;
+  bool said_unanswered_ = false;
+  std::size_t said_dropped_ = 0;  // Of the messages that the layer dropped.
+  lines::SteadyTime say_dropped_{};
   std::uint16_t island_ = 0;
 };
 

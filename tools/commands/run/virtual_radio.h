@@ -38,6 +38,8 @@ class VirtualRadio {
 
   void open() { air_.open(); }
   std::uint16_t port() const { return air_.port(); }
+  /// As lines::Air says.
+  bool is_unanswered() const { return air_.is_unanswered(); }
   /// Takes a packet from its dispatch byte on; `sent` is called before it takes another.
   void send(Bytes packet, bool link_ack);
   /// Receives and sends until the deadline, or for a moment after something happened, or until

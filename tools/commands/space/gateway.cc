@@ -23,6 +23,10 @@ using std::chrono::steady_clock;
 constexpr std::chrono::seconds kSayOtherEvery{10};
 constexpr std::size_t kMembersMax = 1024;  // A broker may offer any number.
 constexpr std::size_t kArrivedMax = 1024;
+constexpr std::size_t kWishesMax = 1024;
+// A sink sends 100 to 200 messages in a second and has room for four. It drops what comes faster.
+constexpr lines::Milliseconds kWishTime{10};
+constexpr lines::Milliseconds kWishesAhead{10};
 
 // Text of others, fit for a terminal.
 std::string printable(std::string_view text) {
@@ -145,24 +149,26 @@ void Gateway::set_online(std::uint16_t id, Member& member, bool online) {
 }
 
 lines::SteadyTime Gateway::run(run::Caller& caller) {
-  for (const Tuple& tuple : space_->take()) take(tuple, caller);
+  for (const Tuple& tuple : space_->take()) take(tuple);
+  give_wishes(caller);
   refusals_.say_rest();
   const auto now = steady_clock::now();
-  if (settings_.gone_after.count() == 0) return lines::SteadyTime::max();
+  const auto next = wishes_.empty() ? lines::SteadyTime::max() : now + kWishTime;
+  if (settings_.gone_after.count() == 0) return next;
   for (auto& [id, member] : members_) {
     if (member.awaited && now - *member.awaited >= settings_.gone_after) {
       member.awaited.reset();
       set_online(id, member, false);
     }
   }
-  return now + std::min(settings_.gone_after, lines::Milliseconds(1000));
+  return std::min(next, now + std::min(settings_.gone_after, lines::Milliseconds(1000)));
 }
 
-void Gateway::take(const Tuple& tuple, run::Caller& caller) {
+void Gateway::take(const Tuple& tuple) {
   const std::optional<Key> key = parse_key(tuple.key);
   if (!key) return refuse(tuple.key, "no key of the layout");
   if (!tuple.wrong.empty()) return refuse(tuple.key, tuple.wrong);
-  if (key->kind == Key::Kind::kSet) return take_wish(tuple, key->mote, caller);
+  if (key->kind == Key::Kind::kSet) return take_wish(tuple, key->mote);
   if (key->kind == Key::Kind::kMote) {
     // What it has just written comes back, too.
     if (!tuple.stays || members_.contains(key->mote) || members_.size() >= kMembersMax) return;
@@ -185,7 +191,7 @@ void Gateway::take(const Tuple& tuple, run::Caller& caller) {
   arrived_.push_back(std::move(packet));
 }
 
-void Gateway::take_wish(const Tuple& tuple, std::uint16_t mote, run::Caller& caller) {
+void Gateway::take_wish(const Tuple& tuple, std::uint16_t mote) {
   Wish wish;
   std::string wrong = parse_wish(tuple.data, wish);
   if (wrong.empty() && tuple.stays) wrong = "a wish that stays would be fulfilled again and again";
@@ -193,23 +199,36 @@ void Gateway::take_wish(const Tuple& tuple, std::uint16_t mote, run::Caller& cal
     wrong = fmt::format("mote {} has not joined island {}", mote, settings_.island);
   }
   if (wrong.empty()) wrong = lacks(members_.at(mote).mote, wish.transducers);
-  machine::Send send;
-  send.dest = {settings_.island, mote};
-  send.app_id = wish.app_id;
-  send.reliable = wish.reliable;
-  send.data = Bytes(wish.data.data(), wish.data.size());
-  std::uint16_t number = machine::kNoSeq;
-  if (wrong.empty()) {
+  if (wrong.empty() && wishes_.size() >= kWishesMax) wrong = "too many at once";
+  if (wrong.empty()) return wishes_.push_back({mote, tuple.key, std::move(wish)});
+  put_event(wish_event("refused", mote, wish.id, wrong));
+  refuse(tuple.key, wrong);
+}
+
+// Gives the serial line no more wishes than the sink's radio can send.
+void Gateway::give_wishes(run::Caller& caller) {
+  const auto now = steady_clock::now();
+  while (!wishes_.empty() && all_sent_ <= now + kWishesAhead) {
+    const Waiting waiting = std::move(wishes_.front());
+    wishes_.pop_front();
+    const Wish& wish = waiting.wish;
+    machine::Send send;
+    send.dest = {settings_.island, waiting.mote};
+    send.app_id = wish.app_id;
+    send.reliable = wish.reliable;
+    send.data = Bytes(wish.data.data(), wish.data.size());
     const auto result = caller.call(send);
-    number = std::get<machine::SendResult>(*result).seq_num;
-    if (number == machine::kNoSeq) wrong = "the outgoing buffer is full";
+    const std::uint16_t number = std::get<machine::SendResult>(*result).seq_num;
+    if (number == machine::kNoSeq) {
+      const std::string wrong = "the outgoing buffer is full";
+      put_event(wish_event("refused", waiting.mote, wish.id, wrong));
+      refuse(waiting.key, wrong);
+      continue;
+    }
+    all_sent_ = std::max(all_sent_, now) + kWishTime;
+    put_event(wish_event("sent", waiting.mote, wish.id, ""));
+    if (wish.reliable) awaited_[number] = {waiting.mote, wish.id};
   }
-  if (!wrong.empty()) {
-    put_event(wish_event("refused", mote, wish.id, wrong));
-    return refuse(tuple.key, wrong);
-  }
-  put_event(wish_event("sent", mote, wish.id, ""));
-  if (wish.reliable) awaited_[number] = {mote, wish.id};
 }
 
 void Gateway::refuse(const std::string& key, const std::string& why) {

@@ -47,14 +47,20 @@ class Gateway final : public run::Application, public run::Peers {
     /// Since when it is waited for after an earlier run; the node watches those that it has heard.
     std::optional<lines::SteadyTime> awaited;
   };
+  struct Waiting {
+    std::uint16_t mote = 0;
+    std::string key;
+    Wish wish;
+  };
   struct Awaited {
     std::uint16_t mote = 0;
     std::string id;
   };
-  void take(const Tuple& tuple, run::Caller& caller);
+  void take(const Tuple& tuple);
   void say_online();
   void take_availability(const Tuple& tuple);
-  void take_wish(const Tuple& tuple, std::uint16_t mote, run::Caller& caller);
+  void take_wish(const Tuple& tuple, std::uint16_t mote);
+  void give_wishes(run::Caller& caller);
   void heard(const machine::Received& message);
   void joined(const machine::Received& message);
   void announce(std::uint16_t id, const Mote& mote);
@@ -67,7 +73,9 @@ class Gateway final : public run::Application, public run::Peers {
   Settings settings_;
   std::unique_ptr<Space> space_;
   std::map<std::uint16_t, Member> members_;
-  std::map<std::uint16_t, Awaited> awaited_;       // By sequence number.
+  std::deque<Waiting> wishes_;                // Not given to the serial line yet.
+  lines::SteadyTime all_sent_{};              // When the sink's radio has sent those that were.
+  std::map<std::uint16_t, Awaited> awaited_;  // By sequence number.
   std::deque<std::vector<std::uint8_t>> arrived_;  // From other base stations.
   std::set<std::int64_t> wrote_online_;            // By when.
   lines::SteadyTime said_other_{};

@@ -1,0 +1,75 @@
+#!/usr/bin/env python3
+"""`rubric run` where nodes are not heard, send too much, or meet others at their places.
+
+Usage: run_troubles_test.py RUBRIC. All of it on this host's loopback.
+"""
+
+import socket
+import time
+import unittest
+
+from run_test import IslandTest
+from testing import ROOT
+
+
+class Troubles(IslandTest):
+    def test_a_mote_that_its_base_station_does_not_hear_is_there(self):
+        """One sends to its sink alone, one sends nothing; both are asked (decision 124)."""
+        robot = ROOT / "conformance/node/examples/robot.py"
+        run = self.started(self.write("islands.yaml", f"""
+islands:
+  - island: 11
+    radio: zep:0
+    sink_app: python3 {robot} watch 11:8
+    motes:
+      - {{id: 6}}
+      - {{id: 8, app: python3 {robot} drive}}
+"""), "--gone-after", "4", "--log", self.folder / "run.rtr")
+        for _ in range(2):
+            run.event("mote_joined", node="sink11")
+        time.sleep(9)
+        code, out, err = run.end()
+        self.assertEqual(code, 0, err)
+        self.assertNotIn("mote_left", run.read.decode() + out)
+        # The answer is nobody else's business.
+        self.assertNotIn("ack_received", run.read.decode() + out)
+        self.passes(self.folder / "run.rtr")
+
+    def test_a_sink_says_what_it_drops(self):
+        sink, base, air = self.island(self.folder / "run.pcapng")
+        mote = self.started("mote", "--id", "5", "--radio", air)
+        mote.event("joined", success=True)
+        base.event("received", src="11:5")
+        for _ in range(300):
+            base.call("send", dest="11:5", app_id=10, reliable=False, data="0a")
+        self.assertGreater(int(sink.waits_for(
+            rb"sink11: (\d+) messages from the serial line were dropped")), 0)
+        self.assertEqual(sink.end()[0], 0)
+
+    def test_two_sinks_on_an_air(self):
+        one = self.started("sink", "--island", "11", "--radio", "zep:0")
+        air = "zep:" + one.waits_for(rb"zep:(\d+)\n")
+        two = self.started("sink", "--island", "11", "--radio", air)
+        mote = self.started("mote", "--id", "5", "--radio", air)
+        mote.event("joined", success=True)
+        for sink in (one, two):
+            sink.waits_for(rb"(sink11: another sink is on this air)")
+            self.assertEqual(sink.end()[0], 0)
+
+    def test_a_port_that_another_program_holds(self):
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
+            other.bind(("127.0.0.1", 0))
+            port = other.getsockname()[1]
+            mote = self.started("mote", "--id", "5", "--radio", f"zep:{port}")
+            self.assertIn(str(port), mote.waits_for(
+                rb"zep:(\d+): the port is held by a program that does not answer"))
+            self.assertEqual(mote.end()[0], 0)
+        hub = self.started("mote", "--id", "5", "--radio", f"zep:{port}", "--app", "-")
+        hub.waits_for(rb"(zep:\d+\n)")
+        mote = self.started("mote", "--id", "6", "--radio", f"zep:{port}", "--app", "-")
+        time.sleep(2.5)
+        self.assertNotIn("held", mote.end()[2])
+
+
+if __name__ == "__main__":
+    unittest.main()
