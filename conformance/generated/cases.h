@@ -17,7 +17,7 @@ struct CaseUse {
 };
 
 /// By file, then as they stand there; each case once for a rule and a sign.
-inline constexpr std::array<CaseUse, 2559> kCaseUses{{
+inline constexpr std::array<CaseUse, 2560> kCaseUses{{
     {"after_set_island.base_station",
      "conformance/cases/after_set_island.rtr", "N9-SET"_rule, false},
     {"after_set_island.base_station",
@@ -3030,6 +3030,7 @@ inline constexpr std::array<CaseUse, 2559> kCaseUses{{
      "conformance/cases/t_base_station.rtr", "N8-PEIS"_rule, false},
     {"t3.base_station_peis_other_sender",
      "conformance/cases/t_base_station.rtr", "T3-SENDER"_rule, true},
+    {"t4.base_station_peis", "conformance/cases/t_base_station.rtr", "N8-PEIS"_rule, false},
     {"t4.base_station_peis", "conformance/cases/t_base_station.rtr", "T2-ACK"_rule, false},
     {"t4.base_station_peis", "conformance/cases/t_base_station.rtr", "T4-SEVERAL"_rule, false},
     {"t4.base_station_peis", "conformance/cases/t_base_station.rtr", "T3-SUCCESS"_rule, false},
