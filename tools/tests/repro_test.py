@@ -45,7 +45,8 @@ class Fuzzed(Folder):
         self.seeds = write_seeds(self.folder / "seeds")
 
     def find(self, flaw):
-        """The first input that makes machine_fuzz end, with this flaw in the machine's place."""
+        """The first input that makes machine_fuzz end, with this flaw in the machine's place, and
+        shows what no decision leaves open, as `rubric shrink` knows."""
         inputs = self.folder / flaw
         inputs.mkdir()
         for i, data in enumerate(mutants(self.seeds, 2000, 1)):
@@ -56,8 +57,14 @@ class Fuzzed(Folder):
             self.assertNotEqual(done.returncode, 0, f"{flaw} was not found")
             self.assertIn("broken: ", done.stderr)
             tried = [line for line in done.stderr.splitlines() if line.startswith(str(inputs))]
-            if run("repro", "machine", tried[-1], "--target", f"machine:{flaw}")[0] == 1:
-                return tried[-1]
+            trace = self.folder / f"{flaw}.tried.rtr"
+            words = ["--target", f"machine:{flaw}"]
+            if run("repro", "machine", tried[-1], *words, "--out", trace)[0] == 1:
+                code, _, err = run("shrink", trace, *words)
+                if code == 0:
+                    return tried[-1]
+                self.assertEqual(code, 3, err)
+                self.assertIn("a decision leaves open", err)
             for path in tried:  # It was one of the replay's own mutants of the last one.
                 os.remove(path)
 
