@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <vector>
 
@@ -11,30 +12,33 @@ namespace rubric::check {
 /// Allocates with the first one.
 template <typename T, std::size_t kRoom>
 class Ring {
+  static_assert(std::has_single_bit(kRoom));  // So that an index wraps by a mask.
+
  public:
+  /// The most that make_room() keeps.
+  static constexpr std::size_t kMost = 4096;
+
   std::size_t size() const { return count_; }
   /// Returns whether the next push forgets the oldest.
   bool full() const { return count_ > 0 && count_ == items_.size(); }
   /// Returns the i-th newest; i < size().
-  T& newest(std::size_t i) { return items_[(next_ + items_.size() - 1 - i) % items_.size()]; }
-  const T& newest(std::size_t i) const {
-    return items_[(next_ + items_.size() - 1 - i) % items_.size()];
-  }
+  T& newest(std::size_t i) { return items_[wrapped(next_ - 1 - i)]; }
+  const T& newest(std::size_t i) const { return items_[wrapped(next_ - 1 - i)]; }
   /// Returns the i-th oldest; i < size().
   T& oldest(std::size_t i) { return newest(count_ - 1 - i); }
   T& push(const T& item) {
     if (items_.empty()) items_.resize(kRoom);
     T& place = items_[next_];
     place = item;
-    next_ = (next_ + 1) % items_.size();
+    next_ = wrapped(next_ + 1);
     if (count_ < items_.size()) ++count_;
     return place;
   }
   /// Makes room for a push: of more than kRoom things the oldest is forgotten, which `forget` is
-  /// told, unless it is still `needed` and there are fewer than `most`.
+  /// told, unless it is still `needed` and there are fewer than kMost.
   template <typename Needed, typename Forget>
-  void make_room(std::size_t most, Needed needed, Forget forget) {
-    while (count_ >= kRoom && (count_ >= most || !needed(oldest(0)))) {
+  void make_room(Needed needed, Forget forget) {
+    while (count_ >= kRoom && (count_ >= kMost || !needed(oldest(0)))) {
       forget(oldest(0));
       --count_;
     }
@@ -50,6 +54,7 @@ class Ring {
   }
 
  private:
+  std::size_t wrapped(std::size_t i) const { return i & (items_.size() - 1); }
   void grow() {
     std::rotate(items_.begin(), items_.begin() + static_cast<std::ptrdiff_t>(next_), items_.end());
     next_ = count_;

@@ -68,12 +68,11 @@ void Acks::arrived(std::uint16_t node, const Observation& seen, std::uint16_t se
   arrived.order = ++orders_[node].came;
   if (arrived.must_ack && arrived.sure) ++owed_[node];
   const std::int64_t now = seen.place.time_us;
-  ring.make_room(
-      kRoomMost, [&](const Arrived& one) { return waits(node, one, now); },
-      [&](Arrived& one) {
-        missing_delivery(node, one, now);
-        close(node, one);
-      });
+  ring.make_room([&](const Arrived& one) { return waits(node, one, now); },
+                 [&](Arrived& one) {
+                   missing_delivery(node, one, now);
+                   close(node, one);
+                 });
   ring.push(arrived);
 }
 
@@ -84,8 +83,8 @@ bool Acks::waits(std::uint16_t node, const Arrived& arrived, std::int64_t now_us
   if (!(undelivered && arrived.delivered == 0) && !(arrived.ackable && arrived.acks == 0)) {
     return false;
   }
-  constexpr std::int64_t kLongUs = 10'000'000;
-  return now_us <= context_.due_us(node, arrived.whole_us) + (device.hearing ? kLongUs : 0);
+  const std::int64_t longer_us = device.hearing ? Context::kHeldLongUs : 0;
+  return now_us <= context_.due_us(node, arrived.whole_us) + longer_us;
 }
 
 void Acks::repeated(std::uint16_t node, const Net& net, std::int64_t now_us) {

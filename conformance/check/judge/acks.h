@@ -6,13 +6,13 @@
 // (T1-DELIVER, N2-IN-ORDER). Who sends a message, and what ends its waiting, is up to sent.h.
 //
 // Evidence: for each node the last messages whose last hop led to it (Arrived), kRoom of them and
-// as many more as may still be delivered or acked, up to kRoomMost. The caller
-// says of each (Arrival) whether the machine's routing forbids it any effect, whether the node is
-// free to ignore it (decisions 114, 116, 126), and whether it surely arrived: a log gave it to the
-// node, the serial line confirmed it, or the link acknowledged a frame to the only known sink. An
-// ack belongs to the message whose source is its destination and whose number is in its body; of
-// several, to one that still waits for an ack. A message that reached the application has arrived,
-// whatever was open before.
+// as many more as may still be delivered or acked, up to Ring::kMost. The caller says of each
+// (Arrival) whether the machine's routing forbids it any effect, whether the node is free to ignore
+// it (decisions 114, 116, 126), and whether it surely arrived: a log gave it to the node, the
+// serial line confirmed it, or the link acknowledged a frame to the only known sink. An ack belongs
+// to the message whose source is its destination and whose number is in its body; of several, to
+// one that still waits for an ack. A message that reached the application has arrived, whatever was
+// open before.
 //
 // Tolerance: an ack is due within the response time (decision 125) after the message's end; one
 // after the sender's timeout is weak. A repetition by the link is one reception or two, so one ack
@@ -28,7 +28,7 @@
 // surely arrived, the response time is over, the node sent something afterwards, no bytes were
 // damaged in between, not too many messages came at once (Context::crowded()), and the ack cannot
 // have escaped: Context::without() says that of a node that acks by radio; on a serial line nothing
-// escapes. What is still open when the run ends, or when it is forgotten, is
+// escapes. What is still open when the run ends, or when its message is forgotten, is
 // inconclusive, or no finding where a log shows that it never arrived. An ack of nothing that came
 // fails only in a run that starts cold, with a complete sniffer, and at a sink of whose line both
 // directions were recorded. A second ack fails only if no second copy of the message can have
@@ -122,7 +122,6 @@ class Acks {
 
  private:
   static constexpr std::size_t kRoom = 64;
-  static constexpr std::size_t kRoomMost = 4096;
 
   bool waits(std::uint16_t node, const Arrived& arrived, std::int64_t now_us);
   void close(std::uint16_t node, Arrived& arrived);

@@ -36,6 +36,8 @@ inline std::int64_t grown_ms_of(std::uint32_t from_ms, std::uint32_t to_ms,
 
 struct Context {
   static constexpr std::int64_t kRoundedUs = 2;
+  /// For so long after its time a log's node may still do what a busy line or application holds up.
+  static constexpr std::int64_t kHeldLongUs = 10'000'000;
 
   Context(const Run& r, const Options& o, const Identity& w, Findings& f);
   Context(const Context&) = delete;

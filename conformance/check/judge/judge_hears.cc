@@ -149,8 +149,6 @@ std::int64_t Judge::ack_timeout_us(machine::Address address) const {
   return longest_us >= 0 ? longest_us : context_.ack_timeout_us(kNobody);
 }
 
-// Counts an ack at the originator of the acked message. By a log it was given to `given`, if that
-// is a node.
 void Judge::ack_comes(const Net& ack, const Observation& seen, std::uint16_t given) {
   if (given != kNobody && interfaces_.switched_off(given, seen.frame.link)) return;
   if (given != kNobody) originals_.ack_given(given, ack, seen.place.time_us);

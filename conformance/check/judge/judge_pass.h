@@ -75,7 +75,8 @@ class Judge {
              const Observation& seen, std::uint16_t sender, const Net& net, bool sure);
   // Returns whether the ack of a message to the node may find no room.
   bool no_room(std::uint16_t node, const Net& net) const;
-  // Counts an ack at the originator of the acked message.
+  // Counts an ack at the originator of the acked message, or at nobody if by a log it was given to
+  // `given` while that interface was off.
   void ack_comes(const Net& ack, const Observation& seen, std::uint16_t given);
   void serial(std::uint32_t index, const Observation& seen, const Mark& mark);
   // Judges the length of a net_msg on a serial line, the first one that is cut short of a sender.

@@ -60,12 +60,11 @@ void Originals::called(std::uint16_t node, const Observation& seen, const machin
   const bool to_mote = here && call.dest.devid != machine::kNullDevid;
   const bool may_stay = free || !shown || moved_[node];
   const auto may_leave = [&](const Call& before) {
-    constexpr std::int64_t kLongUs = 10'000'000;
     const bool may_stay_for_ever = before.free || before.held;
-    const bool late = seen.place.time_us - before.place.time_us > kLongUs;
+    const bool late = seen.place.time_us - before.place.time_us > Context::kHeldLongUs;
     return !before.left && before.result != machine::kNoSeq && !(may_stay_for_ever && late);
   };
-  calls_[node].make_room(kRoomMost, may_leave, [&](const Call& before) {
+  calls_[node].make_room(may_leave, [&](const Call& before) {
     if (may_leave(before)) forgot_[node] = true;
   });
   Call& one = calls_[node].push(
@@ -427,9 +426,8 @@ void Originals::sent(std::uint16_t node, const Observation& seen, const Net& net
     break;
   }
   Ring<Sent, kRoom>& ring = sent_[node];
-  ring.make_room(
-      kRoomMost, [&](const Sent& before) { return awaits(node, before, seen.place.time_us); },
-      [&](const Sent&) { close(node, ring.size() - 1, seen.place.time_us); });
+  ring.make_room([&](const Sent& before) { return awaits(node, before, seen.place.time_us); },
+                 [&](const Sent&) { close(node, ring.size() - 1, seen.place.time_us); });
   ring.push(sent);
 }
 

@@ -70,7 +70,6 @@ class Originals {
 
  private:
   static constexpr std::size_t kRoom = 128;
-  static constexpr std::size_t kRoomMost = 4096;
   static constexpr std::int64_t kTimeouts = 2;  ///< After so many assumed ones an event is missed.
   static constexpr std::int64_t kForever = 5;   ///< And after so many there is none.
 

@@ -89,7 +89,7 @@ void Originals::told(std::uint16_t node, const Observation& seen, const machine:
     // many sent at once the first are forgotten here before their timeout.
     const Device& device = context_.device(node);
     const bool elsewhere = device.role == Role::kBaseStation && !logs_peis(context_.run, node);
-    const bool forgotten = ring.size() + 1 >= kRoomMost && awaits(node, ring.oldest(0), now);
+    const bool forgotten = ring.size() + 1 >= ring.kMost && awaits(node, ring.oldest(0), now);
     const bool came = heard_ack(node, ack.seq_num, [](const Net&) { return true; });
     context_.report(came || !ack.success ? "T3-MATCH"_rule : "T3-SUCCESS"_rule,
                     elsewhere || forgotten ? Severity::kInconclusive
