@@ -79,7 +79,7 @@ std::size_t label_end(std::string_view text) {
   return begins_packet(rest.from(next)) ? next : 0;
 }
 
-/// Returns the number of a month, from 1; 0 for another word.
+// Returns the number of a month, from 1; 0 for another word.
 int month_of(std::string_view word) {
   constexpr std::array<std::string_view, 12> kMonths{"Jan", "Feb", "Mar", "Apr", "May", "Jun",
                                                      "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"};
@@ -138,7 +138,7 @@ constexpr std::int64_t kStampSecondNs = 1'000'000'000;
 constexpr std::size_t kDecimalsMin = 3;
 constexpr std::size_t kDecimalsMost = 9;
 
-/// Takes the parts of a time from the front of a text.
+// Takes the parts of a time from the front of a text.
 class TimeText {
  public:
   explicit TimeText(std::string_view text) : rest_(text) {}

@@ -43,18 +43,16 @@ bool decode_zep_datagram(Bytes datagram, Packet& packet);
 /// version, BSD's loopback, and what Linux captures on its pseudo-interface "any".
 bool is_network_link(std::uint16_t link_type);
 
-/// Returns whether this stands for a ZEP packet without a radio frame.
+/// Returns whether a packet of this link type is a ZEP packet without a radio frame.
 bool is_zep_alone(std::uint16_t link_type);
 
 /// Reads the radio frame in a UDP datagram from or to ZEP's port, or in a sound ZEP packet on
-/// another one. `record` is the captured part of
-/// `original_bytes`; `packet` comes with offset_bytes of the record's first byte, and keeps the
-/// capture's time. It leaves with the link type TAP, as ZEP states facts of the same kind. Returns
-/// false where there is no frame: another protocol, a fragment, or a ZEP packet alone, as
-/// link_type says then.
+/// another one. `record` is the captured part of `original_bytes`; `packet` comes with offset_bytes
+/// of the record's first byte, and keeps the capture's time. It leaves with the link type TAP, as
+/// ZEP states facts of the same kind. Returns false where there is no frame: another protocol, a
+/// fragment, or a ZEP packet alone, as link_type says then.
 /// Faults: those of decode_zep_datagram(), kCut. Sources: RFC 791, RFC 8200, RFC 768;
-/// LINKTYPE_ETHERNET, _LINUX_SLL, _LINUX_SLL2, _NULL, _LOOP,
-/// _RAW.
+/// LINKTYPE_ETHERNET, _LINUX_SLL, _LINUX_SLL2, _NULL, _LOOP, _RAW.
 bool decode_udp_record(Bytes record, std::uint64_t original_bytes, std::uint16_t link_type,
                        Packet& packet);
 

@@ -333,7 +333,8 @@ class Run {
     }
   }
 
-  // Counts packets of user-defined link types that nobody said to be what we take them for.
+  // Counts packets of link types 147 and 148 where no option says what these hold, and those of
+  // them that are not what they are taken for.
   void doubt(const Packet& packet) {
     if (!options_.links.empty() || packet.error.fault == Fault::kCut) return;
     if (packet.link_type != kLinkSerial && packet.link_type != kLinkSf) return;

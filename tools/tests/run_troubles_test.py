@@ -31,7 +31,7 @@ islands:
         code, out, err = run.end()
         self.assertEqual(code, 0, err)
         self.assertNotIn("mote_left", run.read.decode() + out)
-        # The answer is nobody else's business.
+        # No other application is told of the answer.
         self.assertNotIn("ack_received", run.read.decode() + out)
         self.passes(self.folder / "run.rtr")
 

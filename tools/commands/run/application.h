@@ -24,7 +24,7 @@ class Application {
   virtual ~Application() = default;
   /// Begins; the node runs, and its lines are open or about to be.
   virtual void start(Caller&) {}
-  /// Returns whether an event answers a call of its own that is nobody else's business.
+  /// Returns whether an event answers a call of this application. No other is told of it then.
   virtual bool takes(const machine::Notice&) { return false; }
   /// Takes an event, whose bytes are valid until it returns. It may call from here.
   virtual void happened(const machine::Notice&, Caller&) {}
