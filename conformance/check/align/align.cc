@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <string>
@@ -46,10 +47,11 @@ class Alignment {
     look();
     const auto captures =
         std::count_if(files_.begin(), files_.end(), [](const File& f) { return f.frames; });
-    const bool logs = captures > 0 && std::ranges::any_of(files_, &File::log);
-    if (captures < 2 && !logs) return;
+    const auto logs = std::ranges::count_if(files_, &File::log);
+    if (captures + logs < 2) return;
     sightings_ = sightings_of(run_);
-    if (logs) add_logged(run_, sightings_);
+    if (logs > 0) add_logged(run_, sightings_);
+    if (captures == 0) return place_logs();
     while (const std::optional<std::uint32_t> next = first_unsettled()) {
       while (settle_one()) continue;
     }
@@ -57,7 +59,7 @@ class Alignment {
     for (std::uint32_t i = 0; i < files_.size(); ++i) {
       if (files_[i].frames && !files_[i].timed) order(i);
     }
-    for (std::uint32_t i = 0; logs && i < files_.size(); ++i) {
+    for (std::uint32_t i = 0; i < files_.size(); ++i) {
       if (files_[i].log) place_log(i);
     }
   }
@@ -200,12 +202,51 @@ class Alignment {
     } else {
       fit.why = "no capture has time stamps";
     }
+    put_log(timed == files_.end() ? 0 : a, b, fit);
+  }
+
+  // Puts logs without captures on the clock of the first one, those first that have most in common
+  // with what is there.
+  void place_logs() {
+    std::vector<std::uint32_t> rest;
+    for (std::uint32_t i = 0; i < files_.size(); ++i) {
+      if (files_[i].log) rest.push_back(i);
+    }
+    const std::uint32_t first = rest.front();
+    run_.logs.push_back({first});
+    std::vector<std::uint32_t> placed{first};
+    std::vector<CommonFrames> common(files_.size());
+    for (rest.erase(rest.begin()); !rest.empty();) {
+      for (const std::uint32_t b : rest) {
+        CommonFrames its = common_frames(run_, sightings_[placed.back()], sightings_[b]);
+        std::erase_if(its.pairs, [](const Pair& pair) { return pair.how != Common::kPassed; });
+        common[b].pairs.insert(common[b].pairs.end(), its.pairs.begin(), its.pairs.end());
+      }
+      const auto next = std::ranges::max_element(
+          rest, {}, [&](std::uint32_t b) { return common[b].pairs.size(); });
+      const std::uint32_t b = *next;
+      rest.erase(next);
+      put_log(first, b, fit_log(run_, common[b], options_, own_zero_));
+      join_lines(common[b].pairs);
+      placed.push_back(b);
+    }
+  }
+
+  // Two logs of one line are about one tap.
+  void join_lines(const std::vector<Pair>& passed) {
+    std::vector<std::uint32_t> tap(run_.taps.size());
+    std::iota(tap.begin(), tap.end(), 0);
+    for (const Pair& pair : passed) tap[run_.seen[pair.b].tap] = run_.seen[pair.a].tap;
+    for (Observation& seen : run_.seen) seen.tap = tap[seen.tap];
+  }
+
+  void put_log(std::uint32_t a, std::uint32_t b, const ClockFit& fit) {
     if (fit.clocks == Clocks::kDiffer) {
       move_log(run_, b, [&](std::int64_t time_us) { return fit.moved(time_us); });
       say_moved(a, b, fit);
     } else if (fit.clocks == Clocks::kUnsure) {
-      run_.facts.push_back(run_.files[b] + " is not aligned with " +
-                           run_.files[timed == files_.end() ? 0 : a] + ": " + fit.why);
+      run_.facts.push_back(run_.files[b] + " is not aligned with " + run_.files[a] + ": " +
+                           fit.why);
     }
     run_.logs.push_back({b, fit.clocks != Clocks::kUnsure, fit.earlier_us, fit.slack_us});
   }

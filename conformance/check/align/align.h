@@ -36,7 +36,9 @@
 //
 // A log of applications (align_logs.h) shares events with captures, no frames. It lies where the
 // fewest effects come before their causes: at its own times where no others are better, else where
-// at least kFramesMin events say. Run::logs says how much earlier or later it may be.
+// at least kFramesMin events say. Run::logs says how much earlier or later it may be. Logs without
+// captures are put on the clock of the first one in the same way, by what one node sent and another
+// was given; lines that pass such a frame are one line.
 //
 // An order (align_order.cc) for a file without stamps needs kOrderFramesMin pairs too, three
 // quarters of them in one order in both files, and the same majority over missing frames. Each pair
@@ -74,9 +76,9 @@ struct AlignOptions {
 /// Puts the captures of `run` on the clock of the first one that has stamps, where the frames that
 /// two of them share show that their clocks differ; Run::facts says what was done, or why not.
 /// Stamps are those of the files, kNoStamp where there are none; `seen` is in the order of files.
-/// A log beside captures is put on their clock where both show the same events; its own clock is
-/// taken for theirs, within `skew_us`, where nothing contradicts that, unless its zero is its
-/// `own_zero` (decision 9).
+/// A log beside captures, or beside other logs, is put on their clock where both show the same
+/// events; its own clock is taken for theirs, within `skew_us`, where nothing contradicts that,
+/// unless its zero is its `own_zero` (decision 9).
 void align(Run& run, const AlignOptions& options, bool own_zero = false);
 
 }  // namespace rubric::check

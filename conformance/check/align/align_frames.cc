@@ -89,7 +89,7 @@ bool whole(const Observation& a, const Observation& b) {
 bool fits(const Run& run, Common how, const Sighting& cause, const Sighting& effect) {
   const Observation& from = run.seen[cause.index];
   const Observation& to = run.seen[effect.index];
-  if (how == Common::kSame) return whole(from, to);
+  if (how == Common::kSame || how == Common::kPassed) return whole(from, to);
   // The key is all that they have in common.
   if (how == Common::kJoined || how == Common::kLogged) return true;
   Net on_air;
@@ -152,7 +152,7 @@ class Pairing {
       (fit_a[i] == 1 && fit_b[j] == 1 ? out_.pairs : out_.guesses).push_back(pair);
     }
     // Another place hears other frames, and a log is of some nodes.
-    if (how == Common::kSame || how == Common::kLogged) return;
+    if (how == Common::kSame || how == Common::kLogged || how == Common::kPassed) return;
     for (std::size_t i = 0; i < a.size(); ++i) {
       if (fit_a[i] == 0) out_.only_a.push_back(a[i].index);
     }

@@ -15,6 +15,7 @@ enum class Common : std::uint8_t {
   kDown,    ///< A net_msg on a line, and on the air, where the sink sends it on (N7-CONTENT).
   kJoined,  ///< An ack_join, and the serial_joined that reports it.
   kLogged,  ///< A line of a log, and a frame that is its cause or effect (align_logs.h).
+  kPassed,  ///< What a node of one log sent, and a node of another was given.
 };
 
 /// Frame `a` of the first file and frame `b` of the second, indices into Run::seen. Neither could

@@ -29,6 +29,7 @@ class LogSightings {
       const Observation& seen = run_.seen[index_];
       const bool frame = seen.kind == Kind::kRadio || seen.kind == Kind::kSerial;
       if (seen.node.empty() && frame) add_frame(seen);
+      if (!seen.node.empty() && (frame || seen.kind == Kind::kPeis)) add_passed(seen);
       if (seen.kind == Kind::kCall) add_call(seen);
       if (seen.kind == Kind::kNotice) add_notice(seen);
     }
@@ -38,6 +39,14 @@ class LogSightings {
   void put(const Hash& key, bool cause) { put(key, cause, index_); }
   void put(const Hash& key, bool cause, std::uint32_t index) {
     out_[run_.seen[index].place.file].push_back({key.value(), index, Common::kLogged, cause});
+  }
+
+  // What a node sent is the cause of what another one was given.
+  void add_passed(const Observation& seen) {
+    Hash key;
+    key.add(static_cast<std::uint64_t>(seen.kind), 1).add(seen.frame.type, 1);
+    key.add(seen.frame.dest, 2).add(seen.frame.src, 2).add(seen.frame.payload);
+    out_[seen.place.file].push_back({key.value(), index_, Common::kPassed, !seen.received});
   }
 
   void add_frame(const Observation& seen) {

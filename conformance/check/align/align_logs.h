@@ -3,7 +3,8 @@
 // A log has a clock of its own, and no frame that a capture has. But many of its lines cause a
 // frame or tell of one: a call of send and the message with the number that it returned, a message
 // and its delivery, an offer and joined, an ack_join and mote_joined, an ack and receive_ack. No
-// effect comes before its cause, and most come soon after it.
+// effect comes before its cause, and most come soon after it. Two logs share what one node sent and
+// the other was given.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +17,8 @@
 namespace rubric::check {
 
 /// Adds to the sightings of each file those that tie logs to captures: the lines of logs
-/// (Common::kLogged), and the frames of captures that may be their causes or effects.
+/// (Common::kLogged), and the frames of captures that may be their causes or effects; and those that
+/// tie logs to each other (Common::kPassed).
 void add_logged(const Run& run, std::vector<std::vector<Sighting>>& sightings);
 
 /// Moves the times that logs state of their nodes; those of one log, if a file is named.

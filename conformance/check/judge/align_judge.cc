@@ -216,9 +216,24 @@ Run without_logs(const Run& run) {
   return out;
 }
 
-// Judges a run of captures and logs. A failure or a weak finding remains if it is found at each
-// time at which the logs may have begun, and without the logs whose clocks are not known; else it
-// becomes inconclusive.
+// Returns what each log shows without the other files, to which only its clock may not fit.
+std::set<Name> blamed_alone(const Run& run, Options options) {
+  options.sniffer_complete = options.start_cold = false;  // Said of all of them together.
+  std::set<Name> out;
+  for (const LogClock& log : run.logs) {
+    Run alone = run;
+    alone.logs.clear();
+    std::erase_if(alone.seen, [&](const Observation& seen) { return seen.place.file != log.file; });
+    std::erase_if(alone.nodes, [&](const LoggedNode& node) { return node.file != log.file; });
+    merge(alone);
+    out.merge(blamed_in(judge(alone, options)));
+  }
+  return out;
+}
+
+// Judges a run of several files, some of them logs. A failure or a weak finding remains if a log
+// alone shows it, or if it is found at each time at which the logs may have begun, and without the
+// logs whose clocks are not known; else it becomes inconclusive.
 Report judge_each_log(const Run& run, const Options& options) {
   const auto judged = [&](Run now) {
     now.logs.clear();
@@ -230,10 +245,12 @@ Report judge_each_log(const Run& run, const Options& options) {
   };
   Report report = judged(run);
   if (std::ranges::none_of(report.findings, blames)) return report;
+  const std::set<Name> alone = blamed_alone(run, options);
   const auto stands_in = [&](const Report& other) {
     const std::set<Name> blamed = blamed_in(other);
     for (Finding& finding : report.findings) {
-      if (!blames(finding) || blamed.contains(name_of(finding))) continue;
+      const Name name = name_of(finding);
+      if (!blames(finding) || alone.contains(name) || blamed.contains(name)) continue;
       finding.severity = Severity::kInconclusive;
     }
   };

@@ -1,11 +1,13 @@
-// Logs of applications beside captures whose clocks are others, or that have none.
+// Logs beside captures, or beside each other, whose clocks are others, or that have none.
 #include <gtest/gtest.h>
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <regex>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "codec/containers/reader.h"
 #include "conformance/check/input/read.h"
@@ -25,16 +27,22 @@ struct Recorded {
   std::string log;
 };
 
-Recorded recorded(const std::string& scenario, std::int64_t length_us = 0) {
+// Returns the capture, and what the applications and the nodes of the network did.
+Recorded all_of(const std::string& scenario, std::int64_t length_us = 0) {
   const simulate::Scenario& network = *simulate::find_scenario(scenario);
   simulate::Network made = simulate::make_network(network, {});
   simulate::CaptureRecorder capture(made);
   simulate::TraceRecorder trace(made, network.name);
   simulate::Simulation simulation(std::move(made), {&capture, &trace});
   simulation.run_until(length_us == 0 ? network.length_us : length_us);
-  Recorded out{capture.finish(), {}};
+  return {capture.finish(), trace::print(trace.file())};
+}
+
+Recorded recorded(const std::string& scenario, std::int64_t length_us = 0) {
+  const Recorded all = all_of(scenario, length_us);
+  Recorded out{all.capture, {}};
   const std::regex other(R"(\s*@\d+\s+\S+\s+[<>]\s+(?!\s|app|power).*)");
-  std::istringstream lines(trace::print(trace.file()));
+  std::istringstream lines(all.log);
   for (std::string line; std::getline(lines, line);) {
     if (!std::regex_match(line, other)) out.log += line + "\n";
   }
@@ -135,6 +143,59 @@ TEST(AlignLogs, TooFewEventsBlameNobody) {
 TEST(AlignLogs, NobodyIsBlamedBesideACaptureWithoutStamps) {
   for (const char* scenario : {"timeline", "home", "open_door", "two_sinks"}) {
     EXPECT_EQ(broken_in(judged(recorded(scenario), false)), "") << scenario;
+  }
+}
+
+// Judges the log of a network as if each of its nodes had kept one, begun `apart` ticks before that
+// of the node before it.
+Report judged_apart(const std::string& log, int apart) {
+  const std::regex of_a_node(R"((?:%node|\s*@\d+)\s+(\S+).*)");
+  std::vector<std::string> names;
+  std::map<std::string, std::string> logs;
+  std::string head;
+  std::istringstream lines(log);
+  for (std::string line; std::getline(lines, line);) {
+    std::smatch parts;
+    if (!std::regex_match(line, parts, of_a_node)) {
+      if (line[0] == '%' && !line.starts_with("%link")) head += line + "\n";
+    } else if (line[0] == '%') {
+      names.push_back(parts[1]);
+      logs[parts[1]] = line + "\ncase run\n";
+    } else {
+      logs[parts[1]] += line + "\n";
+    }
+  }
+  RunReader reader;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const int ticks = apart * static_cast<int>(i);
+    const auto later = [&](int tick, const std::string&) { return tick + ticks; };
+    std::string error;
+    EXPECT_TRUE(reader.add_bytes(names[i], head + retimed(logs[names[i]], later), error)) << error;
+  }
+  return judge(reader.finish(), {});
+}
+
+TEST(AlignLogs, NobodyIsBlamedWhereEachNodeKeptOne) {
+  for (const char* scenario : {"timeline", "home", "open_door", "inter_island", "two_sinks"}) {
+    for (const int apart : {0, 3, 300, 1200, 9000}) {
+      const Report report = judged_apart(all_of(scenario).log, apart);
+      EXPECT_EQ(broken_in(report), "") << scenario << " " << apart;
+      EXPECT_EQ(report.verdict, Verdict::kPass) << scenario << " " << apart;
+    }
+  }
+}
+
+TEST(AlignLogs, WhatOneOfThemShowsIsFound) {
+  const std::string log = all_of("timeline").log;
+  bool done = false;
+  const std::string lost = retimed(log, [&](int tick, const std::string& line) {
+    const bool it = !done && line.find("bA") != line.npos && line.find("received(") != line.npos;
+    done = done || it;
+    return it ? -1 : tick;
+  });
+  ASSERT_TRUE(done);
+  for (const int apart : {0, 300, 9000}) {
+    EXPECT_EQ(broken_in(judged_apart(lost, apart)), "N8-DELIVER") << apart;
   }
 }
 
