@@ -23,6 +23,7 @@ struct Observation {
     kRadio,    ///< An active message on the air; time_us is the start of the frame.
     kLinkAck,  ///< An 802.15.4 acknowledgement, or that of a serial line; dsn says of what.
     kSerial,   ///< An active message on a serial line; time_us is the end of the frame.
+    kForeign,  ///< A frame of another network, by its PAN; no node of this one hears it.
     kDamaged,  ///< Bytes that are no frame (bad CRC and the like); no node hears them.
     kCall,     ///< An application's call, from a .rtr log.
     kPeis,     ///< A message given to PEIS, or by it to a base station, from a .rtr log.
@@ -99,15 +100,20 @@ struct LoggedNode {
   std::uint16_t island = kNoIsland;
   /// Of the node alone; of one that the trace plays, what those under test state.
   trace::Statement stated = {};
-  bool under_test = true;      ///< If a log marks some nodes as under test, the others are not.
-  bool application = false;    ///< The log has its application's calls and events.
-  bool hearing = false;        ///< The log has what its radio was given; a base station's lines.
-  bool logged = false;         ///< The log has lines of it; else only a header names it.
-  bool whole = false;          ///< The log has all that it got and did (decision 13).
-  bool peis = false;           ///< The log has its lines of PEIS.
-  std::vector<BusyTime> busy;  ///< In order of their beginning.
+  bool under_test = true;    ///< If a log marks some nodes as under test, the others are not.
+  bool application = false;  ///< The log has its application's calls and events.
+  bool hearing = false;      ///< The log has what its radio was given; a base station's lines.
+  bool logged = false;       ///< The log has lines of it; else only a header names it.
+  bool whole = false;        ///< The log has all that it got and did (decision 13).
+  bool peis = false;         ///< The log has its lines of PEIS.
+  std::int64_t from_us = INT64_MIN;  ///< Of several logs without captures: between which times its
+  std::int64_t to_us = INT64_MAX;    ///< log shows it.
+  std::vector<BusyTime> busy;        ///< In order of their beginning.
   std::vector<std::int64_t> link_acks_us;      ///< When its link told it of an acknowledgement.
   std::vector<std::int64_t> link_failures_us;  ///< When it told that none came.
+
+  /// Returns whether the run shows then what the node does.
+  bool shown(std::int64_t time_us) const { return from_us <= time_us && time_us <= to_us; }
 };
 
 /// How well the clock of a log is known that lies beside captures.

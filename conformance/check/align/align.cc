@@ -18,6 +18,8 @@
 namespace rubric::check {
 namespace {
 
+constexpr std::size_t kPassedMin = 3;
+
 std::string decimal(double value, int places, const char* unit) {
   char text[64];
   std::snprintf(text, sizeof text, "%.*f %s", places, value, unit);
@@ -51,7 +53,13 @@ class Alignment {
     if (captures + logs < 2) return;
     sightings_ = sightings_of(run_);
     if (logs > 0) add_logged(run_, sightings_);
-    if (captures == 0) return place_logs();
+    if (captures > 0) return place_files();
+    place_logs();
+    bound_nodes();
+  }
+
+ private:
+  void place_files() {
     while (const std::optional<std::uint32_t> next = first_unsettled()) {
       while (settle_one()) continue;
     }
@@ -64,7 +72,23 @@ class Alignment {
     }
   }
 
- private:
+  // Says of each node when its log shows what it does.
+  void bound_nodes() {
+    std::vector<std::int64_t> from_us(files_.size(), INT64_MAX);
+    std::vector<std::int64_t> to_us(files_.size(), INT64_MIN);
+    for (const Observation& seen : run_.seen) {
+      const std::int64_t time_us = seen.place.time_us;
+      if (time_us == kNoStamp) continue;
+      from_us[seen.place.file] = std::min(from_us[seen.place.file], time_us);
+      to_us[seen.place.file] = std::max(to_us[seen.place.file], time_us);
+    }
+    for (LoggedNode& node : run_.nodes) {
+      if (node.whole) continue;
+      node.from_us = from_us[node.file];
+      node.to_us = to_us[node.file];
+    }
+  }
+
   void look() {
     for (const Observation& seen : run_.seen) {
       const bool radio = seen.kind == Observation::Kind::kRadio;
@@ -191,9 +215,20 @@ class Alignment {
     for (std::uint32_t i = 0; timed != files_.end() && i < files_.size(); ++i) {
       if (!files_[i].timed || files_[i].clock != files_[a].clock) continue;
       steps = steps || files_[i].stepped;
-      const CommonFrames its = common_frames(run_, sightings_[i], sightings_[b]);
+      CommonFrames its = common_frames(run_, sightings_[i], sightings_[b]);
+      // Clocks of captures are one within the skew, and a line may be later than it was put.
+      const std::int64_t apart_us = i == a ? 0 : options_.skew_us + run_.slack_us;
+      for (Pair& pair : its.pairs) pair.lag_min_us -= apart_us;
       common.pairs.insert(common.pairs.end(), its.pairs.begin(), its.pairs.end());
     }
+    std::vector<Pair> passed;  // Between it and other logs.
+    for (const LogClock& log : run_.logs) {
+      if (!log.known) continue;
+      const std::vector<Pair> its = common_of_logs(log.file, b);
+      passed.insert(passed.end(), its.begin(), its.end());
+    }
+    // What passed between nodes is exact; other events may have waited.
+    if (passed.size() >= kPassedMin) common.pairs = passed;
     ClockFit fit;
     if (steps) {
       fit.why = "a clock steps";
@@ -203,6 +238,14 @@ class Alignment {
       fit.why = "no capture has time stamps";
     }
     put_log(timed == files_.end() ? 0 : a, b, fit);
+    if (fit.clocks != Clocks::kUnsure) join_lines(passed);
+  }
+
+  // Returns what one log's node sent, and the other log's was given.
+  std::vector<Pair> common_of_logs(std::uint32_t a, std::uint32_t b) {
+    CommonFrames its = common_frames(run_, sightings_[a], sightings_[b]);
+    std::erase_if(its.pairs, [](const Pair& pair) { return pair.how != Common::kPassed; });
+    return std::move(its.pairs);
   }
 
   // Puts logs without captures on the clock of the first one, those first that have most in common
@@ -218,9 +261,8 @@ class Alignment {
     std::vector<CommonFrames> common(files_.size());
     for (rest.erase(rest.begin()); !rest.empty();) {
       for (const std::uint32_t b : rest) {
-        CommonFrames its = common_frames(run_, sightings_[placed.back()], sightings_[b]);
-        std::erase_if(its.pairs, [](const Pair& pair) { return pair.how != Common::kPassed; });
-        common[b].pairs.insert(common[b].pairs.end(), its.pairs.begin(), its.pairs.end());
+        const std::vector<Pair> its = common_of_logs(placed.back(), b);
+        common[b].pairs.insert(common[b].pairs.end(), its.begin(), its.end());
       }
       const auto next = std::ranges::max_element(
           rest, {}, [&](std::uint32_t b) { return common[b].pairs.size(); });

@@ -18,6 +18,8 @@ constexpr std::size_t kSlopePoints = 300;     // Enough for a slope; pairs of th
 constexpr std::int64_t kUnwaitedUs = 20'000;  // Even the fastest frame may have waited so long.
 constexpr std::int64_t kRoundedUs = 2;        // Rounding may take this from an order.
 constexpr double kTrimmed = 0.02;             // Pairs that are a chance, or a message held up.
+constexpr double kTickUs = 1000;              // A log may count in milliseconds or ticks.
+constexpr std::size_t kStepShare = 10;        // A tenth of the events lies elsewhere: a step.
 constexpr double kSigma = 1.4826;             // Scales a median deviation.
 constexpr std::size_t kDriftFrames = 8;
 constexpr std::int64_t kDriftSpanUs = 10'000'000;
@@ -327,14 +329,18 @@ class Fit {
       double low = -skew_us;
       double high = skew_us;
       all.around_zero(low, high);
-      const double drifted = unseen_drift_us(points_, all);
+      const double doubt = doubt_us(points_, all);
       out_.clocks = Clocks::kAgree;
-      out_.earlier_us = std::llround(std::min(high + drifted, skew_us));
-      out_.slack_us = std::llround(std::min(drifted - low, skew_us));
+      out_.earlier_us = std::llround(std::min(high + doubt, skew_us));
+      out_.slack_us = std::llround(std::min(doubt - low, skew_us));
       return out_;
     }
     if (points_.empty()) return unsure("no event is in both");
     if (!find_inliers()) return out_;
+    const std::size_t others = points_.size() - in_.size();
+    if (others >= kFramesMin && kStepShare * others > points_.size()) {
+      return unsure("its clock steps, or many events are in one of them only");
+    }
     const std::int64_t base_us = in_.front().ahead_us;
     out_.drift = drift_of(in_, base_us);
     out_.spread_us = quantile(deviations(in_), 0.9);
@@ -342,11 +348,12 @@ class Fit {
     if (4 * range.broken > in_.size()) {
       return unsure("some of the frames that are in both would come before their causes");
     }
-    const double drifted = unseen_drift_us(in_, range);
+    const double doubt = doubt_us(in_, range);
+    if (doubt > skew_us) return unsure("its events and frames contradict each other");
     out_.clocks = Clocks::kDiffer;
     out_.offset_us = base_us + std::llround(range.likely);
-    out_.earlier_us = std::llround(range.high - range.likely + drifted);
-    out_.slack_us = std::llround(range.likely - range.low + drifted);
+    out_.earlier_us = std::llround(range.high - range.likely + doubt);
+    out_.slack_us = std::llround(range.likely - range.low + doubt);
     out_.at_us = in_.front().at_us;
     out_.frames = in_.size();
     return out_;
@@ -358,15 +365,20 @@ class Fit {
     const std::int64_t most = options_.response_us + kSlackUs + options_.skew_us;
     const auto far = std::ranges::count_if(
         points_, [&](const Point& point) { return std::abs(point.ahead_us) > most; });
-    return 2 * static_cast<std::size_t>(far) <= points_.size();
+    return kStepShare * static_cast<std::size_t>(far) <= points_.size();
   }
 
-  // Returns how far the clocks may have drifted unseen, where events contradict each other.
-  static double unseen_drift_us(const Points& in, const CausalRange& range) {
-    if (in.empty()) return 0;
-    const double most = kDriftMax * static_cast<double>(in.back().at_us - in.front().at_us);
-    return std::min(
-        {range.contradiction(), most, 2 * quantile(deviations(in), 0.9) + kDriftShownUs});
+  // Returns how much more than one offset allows a pair may be off: by unseen drift, by the tick of
+  // a log, and by all that contradicts where so much does that stamps must scatter.
+  static double doubt_us(const Points& in, const CausalRange& range) {
+    const double most = range.contradiction();
+    if (static_cast<double>(range.broken) > kTrimmed * static_cast<double>(in.size())) {
+      return most + kTickUs;
+    }
+    if (in.empty()) return kTickUs;
+    const double drifted = kDriftMax * static_cast<double>(in.back().at_us - in.front().at_us);
+    const double spread = 2 * quantile(deviations(in), 0.9) + kDriftShownUs;
+    return kTickUs + std::min({most, drifted, spread});
   }
 
   // Finds the pairs that agree. Returns false, having said why, if they are too few.

@@ -19,6 +19,7 @@ using Kind = Observation::Kind;
 
 constexpr std::int64_t kRepeatUs = 500'000;  // The link repeats a frame within it.
 constexpr std::uint32_t kRepeatFrames = 8;   // The same without stamps.
+constexpr std::int64_t kOnWayUs = 10;        // A frame that passed is given after it was sent.
 constexpr std::size_t kGroupMax = 32;        // Frames of one key that are told apart by content.
 
 // Frames with equal keys are compared byte by byte.
@@ -176,7 +177,8 @@ class Pairing {
   Pair pair_of(Common how, const Sighting& a, const Sighting& b, int sign) const {
     // Radio stamps mark the start of a frame, serial stamps its end.
     const Observation& cause = run_.seen[sign < 0 ? b.index : a.index];
-    return {a.index, b.index, how, sign, sign == 0 ? 0 : air_us(cause)};
+    const std::int64_t lag_us = how == Common::kPassed ? kOnWayUs : air_us(cause);
+    return {a.index, b.index, how, sign, sign == 0 ? 0 : lag_us};
   }
 
   const Run& run_;

@@ -17,18 +17,20 @@
 namespace rubric::check {
 
 /// Adds to the sightings of each file those that tie logs to captures: the lines of logs
-/// (Common::kLogged), and the frames of captures that may be their causes or effects; and those that
-/// tie logs to each other (Common::kPassed).
+/// (Common::kLogged), and the frames of captures that may be their causes or effects; and those
+/// that tie logs to each other (Common::kPassed).
 void add_logged(const Run& run, std::vector<std::vector<Sighting>>& sightings);
 
 /// Moves the times that logs state of their nodes; those of one log, if a file is named.
 template <class Moved>
 void move_nodes(Run& run, std::optional<std::uint32_t> file, Moved moved) {
   const auto move = [&](std::int64_t& time_us) {
-    if (time_us != INT64_MAX) time_us = moved(time_us);
+    if (time_us != INT64_MAX && time_us != INT64_MIN) time_us = moved(time_us);
   };
   for (LoggedNode& node : run.nodes) {
     if (file && node.file != *file) continue;
+    move(node.from_us);
+    move(node.to_us);
     for (BusyTime& busy : node.busy) {
       move(busy.from_us);
       move(busy.to_us);

@@ -467,7 +467,8 @@ class Identifier {
       // A log has all that its nodes under test sent: it is one of these, with other bytes after
       // it.
       mark.repeat = mark.device < run_.nodes.size() && run_.nodes[mark.device].under_test &&
-                    run_.nodes[mark.device].logged;
+                    run_.nodes[mark.device].logged &&
+                    run_.nodes[mark.device].shown(seen.place.time_us);
       return;
     }
     if (seen.kind == Observation::Kind::kSerial || seen.kind == Observation::Kind::kLinkAck) {

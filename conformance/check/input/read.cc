@@ -1,10 +1,12 @@
 #include "conformance/check/input/read.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <map>
 
 #include "conformance/check/align/align_logs.h"
 #include "conformance/check/align/steps.h"
@@ -84,7 +86,7 @@ void observe(const Packet& packet, std::string_view interface_name, ReadSource& 
     seen.to_mote = packet.direction == Direction::kUnknown
                        ? looks_towards_sink(seen.frame)
                        : packet.direction == Direction::kInbound;
-  } else if (seen.kind == Observation::Kind::kLinkAck && packet.framing == Framing::kHdlc) {
+  } else if (packet.framing == Framing::kHdlc || packet.framing == Framing::kSf) {
     seen.to_mote = packet.direction == Direction::kInbound;
   }
   Tap& tap = run.taps[seen.tap];
@@ -143,6 +145,33 @@ bool begin_logs(Run& run) {
   return begin_us != 0;
 }
 
+// Leaves out what networks with another PAN radiate (TinyOS's AM group): nodes of this one, that
+// with most frames, neither take nor acknowledge it.
+void leave_out_networks(Run& run) {
+  constexpr std::uint16_t kEveryPan = 0xFFFF;
+  std::map<std::uint16_t, std::size_t> frames;
+  const auto radio = [](const Observation& seen) {
+    return seen.kind == Observation::Kind::kRadio && seen.node.empty() && seen.pan != kEveryPan;
+  };
+  for (const Observation& seen : run.seen) {
+    if (radio(seen)) ++frames[seen.pan];
+  }
+  if (frames.size() < 2) return;
+  const auto most =
+      std::ranges::max_element(frames, {}, [](const auto& one) { return one.second; });
+  for (const auto& [pan, count] : frames) {
+    if (pan == most->first) continue;
+    char text[128];
+    std::snprintf(text, sizeof text,
+                  "%zu frame%s of PAN 0x%04x %s another network's, which is not judged", count,
+                  count == 1 ? "" : "s", pan, count == 1 ? "is" : "are");
+    run.facts.push_back(text);
+  }
+  for (Observation& seen : run.seen) {
+    if (radio(seen) && seen.pan != most->first) seen.kind = Observation::Kind::kForeign;
+  }
+}
+
 // Makes times count from `begin_us`, else from the first one, and orders what several taps saw.
 Run in_one_order(Run run, const AlignOptions& options, std::optional<std::int64_t>& begin_us) {
   const auto by_file = [](const Observation& a, const Observation& b) {
@@ -151,6 +180,7 @@ Run in_one_order(Run run, const AlignOptions& options, std::optional<std::int64_
   if (!std::is_sorted(run.seen.begin(), run.seen.end(), by_file)) {  // Files that grew at a time.
     std::stable_sort(run.seen.begin(), run.seen.end(), by_file);
   }
+  leave_out_networks(run);
   find_directions(run);
   mend_steps(run);
   const bool own_zero = begin_logs(run);

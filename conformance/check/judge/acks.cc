@@ -252,6 +252,7 @@ void Acks::refuse(std::uint16_t node, const Observation& seen, const Net& ack, s
     const bool of_mote = ack.dest.pid == ack.src.pid && !machine::is_reserved(ack.dest.devid);
     if (context_.half_heard(node) && !of_mote) return context_.needs_host(node, seen.place);
     severity = context_.on_line(node, context_.without_ever(kNobody, now));
+    if (!of_mote && !context_.has_lines(node)) severity = Severity::kInconclusive;
     meant_ack(node, ack);
     said.text = "An ack to " + text_of(ack.dest) + " of number " +
                 number(static_cast<std::uint64_t>(acked)) +
@@ -341,8 +342,9 @@ void Acks::delivered(std::uint16_t node, const Observation& seen,
     const bool by_peis = device.role == machine::Role::kBaseStation &&
                          received.src.pid != device.island && !logs_peis(context_.run, node);
     context_.report("T1-DELIVER"_rule,
-                    by_peis ? Severity::kInconclusive
-                            : context_.without(kNobody, context_.run.start_us, seen.place.time_us),
+                    by_peis || !context_.has_lines(node)
+                        ? Severity::kInconclusive
+                        : context_.without(kNobody, context_.run.start_us, seen.place.time_us),
                     seen.place, node,
                     {"The application gets " + number(received.data.size()) + " bytes from " +
                          text_of(received.src) + " for APPID " + number(received.app_id) +
@@ -563,9 +565,10 @@ void Acks::overdue(std::uint16_t node, std::int64_t now_us) {
   for (std::size_t i = 0; i < ring.size(); ++i) missing_delivery(node, ring.oldest(i), now_us);
 }
 
-void Acks::finish(std::int64_t end_us) {
+void Acks::finish() {
   for (std::size_t i = 0; i < arrived_.size(); ++i) {
     const auto node = static_cast<std::uint16_t>(i);
+    const std::int64_t end_us = context_.end_us(node);
     Ring<Arrived, kRoom>& ring = arrived_[node];
     for (std::size_t k = 0; k < ring.size(); ++k) {
       Arrived& arrived = ring.oldest(k);

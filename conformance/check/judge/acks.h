@@ -118,7 +118,7 @@ class Acks {
   bool acks_for(std::uint16_t node, std::uint8_t app_id) const {
     return acked_apps_[node].contains(app_id);
   }
-  void finish(std::int64_t end_us);
+  void finish();
 
  private:
   static constexpr std::size_t kRoom = 64;

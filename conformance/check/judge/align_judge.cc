@@ -1,6 +1,8 @@
 // judge(), as observation.h declares it. It judges a run in more than one way where only common
 // frames tell the order of its files, or where the clock of a recorder stepped.
 #include <algorithm>
+#include <cstdlib>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <set>
@@ -199,6 +201,18 @@ Report judge_each_gap(const Run& run, const Options& options) {
   return report;
 }
 
+// Moves the whole run to later times.
+void move_all(Run& run, std::int64_t by_us) {
+  const auto move = [by_us](std::int64_t time_us) { return time_us + by_us; };
+  for (Observation& seen : run.seen) {
+    if (seen.place.in_order()) seen.place.time_us += by_us;
+  }
+  for (LoosePlace& place : run.loose) place.early_us += by_us, place.late_us += by_us;
+  for (ClockStep& step : run.steps) step.time_us += by_us;
+  for (std::int64_t* const time_us : {&run.start_us, &run.end_us}) *time_us += by_us;
+  move_nodes(run, std::nullopt, move);
+}
+
 // Returns the run without what logs say whose clocks are not known.
 Run without_logs(const Run& run) {
   Run out = run;
@@ -216,17 +230,34 @@ Run without_logs(const Run& run) {
   return out;
 }
 
+// Findings that blame, `later_us` later than in the run that was given.
+struct Blamed {
+  std::vector<Finding> findings;
+  std::int64_t later_us = 0;
+
+  // Two files may show one frame, so that a finding of it lies in the one or in the other.
+  bool has(const Finding& one, std::int64_t near_us) const {
+    return std::ranges::any_of(findings, [&](const Finding& other) {
+      if (!blames(other) || other.requirement != one.requirement || other.node != one.node) {
+        return false;
+      }
+      const std::int64_t apart_us = other.place.time_us - later_us - one.place.time_us;
+      return name_of(other) == name_of(one) || std::abs(apart_us) <= near_us;
+    });
+  }
+};
+
 // Returns what each log shows without the other files, to which only its clock may not fit.
-std::set<Name> blamed_alone(const Run& run, Options options) {
+Blamed blamed_alone(const Run& run, Options options) {
   options.sniffer_complete = options.start_cold = false;  // Said of all of them together.
-  std::set<Name> out;
+  Blamed out;
   for (const LogClock& log : run.logs) {
     Run alone = run;
     alone.logs.clear();
     std::erase_if(alone.seen, [&](const Observation& seen) { return seen.place.file != log.file; });
     std::erase_if(alone.nodes, [&](const LoggedNode& node) { return node.file != log.file; });
     merge(alone);
-    out.merge(blamed_in(judge(alone, options)));
+    std::ranges::move(judge(alone, options).findings, std::back_inserter(out.findings));
   }
   return out;
 }
@@ -235,39 +266,43 @@ std::set<Name> blamed_alone(const Run& run, Options options) {
 // alone shows it, or if it is found at each time at which the logs may have begun, and without the
 // logs whose clocks are not known; else it becomes inconclusive.
 Report judge_each_log(const Run& run, const Options& options) {
-  const auto judged = [&](Run now) {
+  const auto judged = [&](Run now, bool with_all = true) {
     now.logs.clear();
+    const auto [start_us, end_us] = std::pair(now.start_us, now.end_us);
     merge(now);
     now.has_time = run.has_time;
-    now.start_us = run.start_us;
-    now.end_us = std::max(run.end_us, now.end_us);
+    now.start_us = std::min(start_us, now.start_us);
+    if (with_all) now.end_us = std::max(end_us, now.end_us);
     return judge(now, options);
   };
   Report report = judged(run);
   if (std::ranges::none_of(report.findings, blames)) return report;
-  const std::set<Name> alone = blamed_alone(run, options);
-  const auto stands_in = [&](const Report& other) {
-    const std::set<Name> blamed = blamed_in(other);
+  std::int64_t room_us = 0;  // A log that begins earlier makes the run longer.
+  std::int64_t near_us = options.skew_us;
+  for (const LogClock& log : run.logs) {
+    room_us = std::max(room_us, log.earlier_us);
+    near_us = std::max(near_us, log.earlier_us + log.later_us);
+  }
+  const Blamed alone = blamed_alone(run, options);
+  const auto stands_in = [&](const Blamed& blamed) {
     for (Finding& finding : report.findings) {
-      const Name name = name_of(finding);
-      if (!blames(finding) || alone.contains(name) || blamed.contains(name)) continue;
+      if (!blames(finding) || alone.has(finding, near_us) || blamed.has(finding, near_us)) continue;
       finding.severity = Severity::kInconclusive;
     }
   };
-  const auto moved = [&](auto later_us) {
+  constexpr int kPositions = 8;
+  for (int at = 0; at <= kPositions; ++at) {
     Run now = run;
+    move_all(now, room_us);
     for (const LogClock& log : run.logs) {
-      const std::int64_t by_us = later_us(log);
-      move_log(now, log.file, [by_us](std::int64_t time_us) {
-        return std::max<std::int64_t>(0, time_us + by_us);
-      });
+      const std::int64_t by_us = (log.earlier_us + log.later_us) * at / kPositions - log.earlier_us;
+      move_log(now, log.file, [by_us](std::int64_t time_us) { return time_us + by_us; });
     }
-    return judged(std::move(now));
-  };
-  stands_in(moved([](const LogClock& log) { return -log.earlier_us; }));
-  stands_in(moved([](const LogClock& log) { return (log.later_us - log.earlier_us) / 2; }));
-  stands_in(moved([](const LogClock& log) { return log.later_us; }));
-  if (!std::ranges::all_of(run.logs, &LogClock::known)) stands_in(judged(without_logs(run)));
+    stands_in({judged(std::move(now)).findings, room_us});
+  }
+  if (!std::ranges::all_of(run.logs, &LogClock::known)) {
+    stands_in({judged(without_logs(run), false).findings});
+  }
   report.verdict = verdict_of(report.findings);
   return report;
 }

@@ -137,6 +137,17 @@ void Announcements::announce(SinkWatch& sink, const Place& at, machine::Address 
 void Announcements::refuse_report(SinkWatch& sink, PairWatch& watch, const Place& at,
                                   const Admission& announced, bool notice, bool astray) {
   const std::uint16_t mote_am = announced.devid;
+  const auto its_ack = [&](const Observation& seen) {
+    AckJoin ack;
+    return seen.kind == Observation::Kind::kRadio && seen.frame.type == am::kAckJoin &&
+           parse_ack_join(seen.frame.payload, ack) && ack.src.devid == mote_am &&
+           ack.dest.pid == sink.island;
+  };
+  if (!context_.device(sink.device).whole && at.timed() && context_.soon(at.time_us, its_ack)) {
+    watch.know_nothing();
+    watch.ahead_us = at.time_us;
+    return;
+  }
   const SinkHypothesis& h = watch.set.back();
   Said said;
   for (auto it = watch.set.rbegin(); it != watch.set.rend(); ++it) {
@@ -233,7 +244,8 @@ void Announcements::overdue_reports(SinkWatch& sink, std::int64_t end_us) {
         context_.due_us(sink.device, std::max(watch.admitted_us, sink.serial_on_us),
                         machine::Link::kSerial) +
         (sink.behind ? kFrameUs : 0);
-    if (watch.report_due && now_us > due_us) due.push_back(am);
+    const bool ahead = watch.admitted.time_us - watch.ahead_us <= context_.options.skew_us;
+    if (watch.report_due && now_us > due_us && !ahead) due.push_back(am);
   }
   std::sort(due.begin(), due.end(), [&](std::uint16_t a, std::uint16_t b) {
     return std::pair(sink.motes[a].admitted.time_us, a) <
@@ -247,20 +259,21 @@ void Announcements::overdue_reports(SinkWatch& sink, std::int64_t end_us) {
     sink.set_due(watch, false);
     const auto owes = [](const SinkHypothesis& h) { return !h.unknown && h.owes_report; };
     if (!std::all_of(watch.set.begin(), watch.set.end(), owes)) continue;
-    context_.report(
-        "J6-REPORT"_rule,
-        room && !may_be_lost(sink, watch) && !context_.who.damaged(watch.admitted.time_us, now_us)
-            ? context_.on_line(sink.device, Severity::kFail)
-            : Severity::kInconclusive,
-        watch.admitted, sink.device,
-        {"The ack_join of mote " + number(am) +
-             (whole ? " was received (by the sink's log)"
-                    : " was received (the link acknowledged it)") +
-             ", and no serial_joined followed within " +
-             ms_text(context_.response_us(sink.device)) +
-             (whole ? "." : ", though the sink sent other frames later."),
-         "One serial_joined for the new member.",
-         {}});
+    context_.report("J6-REPORT"_rule,
+                    room && !may_be_lost(sink, watch) &&
+                            !context_.who.damaged(watch.admitted.time_us, now_us) &&
+                            context_.line_recorded(sink.device, watch.admitted.time_us)
+                        ? context_.on_line(sink.device, Severity::kFail)
+                        : Severity::kInconclusive,
+                    watch.admitted, sink.device,
+                    {"The ack_join of mote " + number(am) +
+                         (whole ? " was received (by the sink's log)"
+                                : " was received (the link acknowledged it)") +
+                         ", and no serial_joined followed within " +
+                         ms_text(context_.response_us(sink.device)) +
+                         (whole ? "." : ", though the sink sent other frames later."),
+                     "One serial_joined for the new member.",
+                     {}});
   }
 }
 
@@ -307,8 +320,9 @@ void Announcements::forgets(std::uint16_t sink_device, std::uint16_t mote_am, st
   if (sink != nullptr) unannounced(*sink, mote_am, joins_.pair(*sink, mote_am), now_us);
 }
 
-void Announcements::finish(std::int64_t end_us) {
+void Announcements::finish() {
   for (SinkWatch& sink : joins_.all()) {
+    const std::int64_t end_us = context_.end_us(sink.device);
     overdue_reports(sink, end_us);
     for (const auto& [am, watch] : sink.motes) unannounced(sink, am, watch, end_us);
   }

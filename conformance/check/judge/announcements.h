@@ -32,7 +32,7 @@ class Announcements {
   /// island, or forgets a mote.
   void ends(std::uint16_t sink, std::int64_t now_us);
   void forgets(std::uint16_t sink, std::uint16_t mote_am, std::int64_t now_us);
-  void finish(std::int64_t end_us);
+  void finish();
 
  private:
   static constexpr std::int64_t kNotEnded = -1;

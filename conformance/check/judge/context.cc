@@ -90,12 +90,25 @@ Context::Context(const Run& r, const Options& o, const Identity& w, Findings& f)
 
 void Context::look_up() {
   down_taps.resize(run.taps.size());
+  std::vector<std::int64_t> file_from_us(run.files.size(), INT64_MAX);
   for (const Observation& seen : run.seen) {
     if (seen.kind == Observation::Kind::kSerial && seen.to_mote) down_taps[seen.tap] = true;
+    std::int64_t& from_us = file_from_us[seen.place.file];
+    from_us = std::min(from_us, seen.place.time_us);
   }
+  tap_from_us.resize(run.taps.size());
+  for (const Observation& seen : run.seen) tap_from_us[seen.tap] = file_from_us[seen.place.file];
+  begun_us_.assign(run.nodes.size(), INT64_MAX);
   last_us.assign(who.devices.size(), -1);
   for (std::size_t i = 0; i < run.seen.size(); ++i) {
     const std::uint16_t sender = who.marks[i].device;
+    const Observation& seen = run.seen[i];
+    // A mote that joins has sent no message before.
+    const auto* joined = seen.notice ? std::get_if<machine::Joined>(seen.notice) : nullptr;
+    if (sender < begun_us_.size() &&
+        (seen.kind == Observation::Kind::kReboot || (joined != nullptr && joined->success))) {
+      begun_us_[sender] = std::min(begun_us_[sender], seen.place.time_us);
+    }
     if (sender != kNobody) last_us[sender] = run.seen[i].place.time_us;
   }
   sink_am = profile(kNobody).sink_id;  // Nobody states another.
@@ -175,6 +188,19 @@ Severity Context::on_line(std::uint16_t node, Severity severity) const {
       std::any_of(taps.begin(), taps.end(), [this](std::uint32_t tap) { return lossy_taps[tap]; });
   // Where files are in no order, a frame of another line may be taken for this node's.
   return lossy || unordered ? std::min(severity, Severity::kInconclusive) : severity;
+}
+
+bool Context::has_lines(std::uint16_t node) const {
+  const Device& d = device(node);
+  if (d.role == machine::Role::kMote || d.whole || !d.taps.empty()) return true;
+  return d.role == machine::Role::kBaseStation &&
+         (d.hearing || (d.partner != kNobody && !device(d.partner).taps.empty()));
+}
+
+bool Context::line_recorded(std::uint16_t sink, std::int64_t time_us) const {
+  return run.past.until_us >= 0 || std::ranges::all_of(device(sink).taps, [&](std::uint32_t tap) {
+           return tap_from_us[tap] <= time_us;
+         });
 }
 
 void Context::needs_host(std::uint16_t sink, const Place& at) {
@@ -421,7 +447,9 @@ void Context::report(ReqId requirement, Severity severity, const Place& at, std:
     if (!d.known && severity > Severity::kNote) finding.severity = Severity::kStray;
   }
   const bool blames = finding.severity == Severity::kFail || finding.severity == Severity::kWeak;
-  if (blames && rests_on_order(requirement, at, node)) {
+  // What another node's log shows of it may have its cause, or its event, where its own has ended.
+  const bool unseen = node < run.nodes.size() && at.timed() && !run.nodes[node].shown(at.time_us);
+  if (blames && (unseen || rests_on_order(requirement, at, node))) {
     finding.severity = Severity::kInconclusive;
   }
   if (node != kNobody && gather(finding, node)) return;

@@ -63,7 +63,8 @@ struct Context {
   std::vector<bool> untimed_taps;  ///< If unordered: taps with frames without a stamp,
                                    ///< or on a clock of their own.
 
-  std::vector<bool> down_taps;  ///< Taps with frames to a sink.
+  std::vector<bool> down_taps;            ///< Taps with frames to a sink.
+  std::vector<std::int64_t> tap_from_us;  ///< By tap: the first frame of its file.
 
   std::vector<bool> lossy_taps;       ///< Serial lines of which the capture misses frames.
   bool lossy_air = false;             ///< It misses many of the air; a link's repeat shows no gap.
@@ -101,6 +102,28 @@ struct Context {
   std::int64_t ack_timeout_us(std::uint16_t node) const { return terms(node).ack_timeout_us; }
   bool ack_timeout_stated(std::uint16_t node) const {
     return device(node).whole || terms(node).ack_timeout_stated;
+  }
+  /// Returns until when the run shows what the node does: another node's log may go on for longer.
+  std::int64_t end_us(std::uint16_t node) const {
+    return node < run.nodes.size() ? std::min(run.end_us, run.nodes[node].to_us) : run.end_us;
+  }
+  /// Returns whether what happened up to `before_us` before then may have come before the node's
+  /// log began.
+  bool begun_before(std::uint16_t node, std::int64_t time_us, std::int64_t before_us) const {
+    return node < run.nodes.size() && !device(node).whole && !options.start_cold &&
+           begun_us_[node] >= time_us &&
+           time_us - std::max(run.start_us, run.nodes[node].from_us) <= before_us;
+  }
+  /// Returns whether such a thing was seen by the skew of the taps later: it may be the cause.
+  template <class Cause>
+  bool soon(std::int64_t time_us, Cause is_cause) const {
+    const auto from = std::ranges::lower_bound(
+        run.seen, time_us, {}, [](const Observation& seen) { return seen.place.time_us; });
+    for (auto at = from; at != run.seen.end(); ++at) {
+      if (at->place.time_us > time_us + options.skew_us) return false;
+      if (is_cause(*at)) return true;
+    }
+    return false;
   }
   /// Returns when an answer to what the node has whole at `whole_us` is overdue. What waited for a
   /// line or an application that was busy, by the node's log, may take as long again behind others.
@@ -160,13 +183,19 @@ struct Context {
   /// Returns `severity`, or kInconclusive if frames are missing from the capture of the line of
   /// `node`, a sink or base station: for findings that rest on a line's frame that is not there.
   Severity on_line(std::uint16_t node, Severity severity) const;
+  /// Returns whether the run has all lines of the node: a mote has the air alone, of a sink or a
+  /// base station nothing that depends on its serial line is known without it.
+  bool has_lines(std::uint16_t node) const;
+  /// Returns whether the capture of the sink's line had begun by then.
+  bool line_recorded(std::uint16_t sink, std::int64_t time_us) const;
   /// Reports what was gathered about nodes that fell silent and hosts that are not in the run.
   void finish();
   /// Reports a frame of an unknown sender.
   void report_stranger(const Observation& seen, std::uint16_t node);
 
  private:
-  std::vector<Terms> logged_;  // By device.
+  std::vector<Terms> logged_;           // By device.
+  std::vector<std::int64_t> begun_us_;  // Of these: when the log shows that it begins anew.
   Terms unlogged_;
 
   int backlog_of(std::uint16_t node, std::size_t index) const;

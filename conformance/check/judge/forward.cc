@@ -46,6 +46,18 @@ void Forwarding::heard_on_serial(std::uint16_t sink, std::uint16_t base, const O
   passing.owes = onward && net.sound && net.reliable <= 1 && !line->deaf &&
                  net.dest.pid != machine::kBroadcastPid;
   passing.owed = passing.owes && !down.off && (down.sure || !context_.device(sink).hearing);
+  // The sink may have radiated it already, if the two taps' clocks differ.
+  for (std::size_t i = 0; i < line->ahead.size(); ++i) {
+    Passing& ahead = line->ahead.oldest(i);
+    const bool soon = seen.place.time_us - ahead.place.time_us <= context_.options.skew_us;
+    if (ahead.passed != 0 || !soon || !same_message(ahead.net, net) ||
+        !same_payload(ahead.net, net)) {
+      continue;
+    }
+    ahead.passed = passing.passed = 1;
+    passing.owed = false;
+    break;
+  }
   store(line->down, passing);
   // A capture does not show whether the base station wrote it; from PEIS come other islands' only.
   const bool own_island = net.src.pid == line->island && net.src.devid != machine::kNullDevid;
@@ -172,12 +184,23 @@ bool Forwarding::sent_on_radio(std::uint16_t sink, const Observation& seen, cons
     return other.sink != sink && net.src == machine::Address{other.island, other.am};
   });
   const bool open = anothers && !plain && !context_.device(sink).hearing;
-  context_.report("N7-CONTENT"_rule, open ? Severity::kInconclusive : Severity::kFail, seen.place,
-                  sink,
-                  {"The sink radiates " + name_of(net) + "; nobody sent it this.",
+  Passing ahead;
+  ahead.net = net;
+  ahead.place = seen.place;
+  ahead.sure = !open;
+  if (line->ahead.full() && line->ahead.oldest(0).passed == 0)
+    invented(*line, line->ahead.oldest(0));
+  line->ahead.push(ahead);
+  if (context_.device(sink).whole) expire_early(*line, INT64_MAX);  // One clock.
+  return true;
+}
+
+void Forwarding::invented(Line& line, const Passing& ahead) {
+  context_.report("N7-CONTENT"_rule, ahead.sure ? Severity::kFail : Severity::kInconclusive,
+                  ahead.place, line.sink,
+                  {"The sink radiates " + name_of(ahead.net) + "; nobody sent it this.",
                    "Its own messages, and those that came to it.",
                    {}});
-  return true;
 }
 
 // Judges what the sink sends on by radio that it heard there. Returns whether it is such a message.
@@ -219,7 +242,7 @@ bool Forwarding::relayed(Line& line, const Observation& seen, const Net& net) {
 void Forwarding::overdue(std::uint16_t sink, std::int64_t now_us) {
   Line* const line = find(sink);
   if (line == nullptr) return;
-  if (line->early.size() > 0) expire_early(*line, now_us);  // It may be what is missing.
+  expire_early(*line, now_us);  // It may be what is missing.
   if (line->up.owed > 0) overdue_up(*line, now_us);
   if (line->down.owed > 0) overdue_down(*line, now_us);
 }
@@ -338,8 +361,9 @@ void Forwarding::overdue_down(Line& line, std::int64_t now_us) {
   }
 }
 
-void Forwarding::finish(std::int64_t end_us) {
+void Forwarding::finish() {
   for (Line& line : lines_) {
+    const std::int64_t end_us = context_.end_us(line.sink);
     // At its end a log of what the sink was given needs no sign of life.
     expire_early(line, end_us + context_.options.skew_us + 1);
     if (context_.device(line.sink).hearing && line.up.owed > 0) overdue_up(line, end_us);

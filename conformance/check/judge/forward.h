@@ -87,7 +87,7 @@ class Forwarding {
   void begin_life(std::uint16_t sink, std::int64_t since_us);
   /// Judges what the sink owes, by a log that has all that it does until then.
   void overdue(std::uint16_t sink, std::int64_t now_us);
-  void finish(std::int64_t end_us);
+  void finish();
 
  private:
   static constexpr std::size_t kRoom = 256;
@@ -116,6 +116,7 @@ class Forwarding {
     Way up;                           ///< From the radio.
     Way down;                         ///< From serial.
     Ring<Passing, kEarlyRoom> early;  ///< On serial before the radio stamp, by skew of the taps.
+    Ring<Passing, kEarlyRoom> ahead;  ///< By radio before the serial stamp.
     std::uint64_t order = 0;
     /// The latest that was passed on.
     struct Last {
@@ -147,6 +148,7 @@ class Forwarding {
   bool may_be_anothers(const Line& line, const Net& net);
   bool relayed(Line& line, const Observation& seen, const Net& net);
   void unheard(Line& line, const Passing& passing);
+  void invented(Line& line, const Passing& passing);
   void judge_order(Line& line, const Passing& passing, const Observation& seen);
 
   Context& context_;

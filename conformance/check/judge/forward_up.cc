@@ -114,7 +114,7 @@ void Forwarding::sent_on_serial(std::uint16_t sink, const Observation& seen, con
   Line* const line = find(sink);
   if (line == nullptr) return;
   const std::int64_t now = seen.place.time_us;
-  if (line->early.size() > 0) expire_early(*line, now);
+  expire_early(*line, now);
   for (std::size_t i = 0; i < line->up.size(); ++i) {
     Passing& passing = line->up.newest(i);
     if (passing.passed >= passing.copies || !same_message(passing.net, net) ||
@@ -189,8 +189,14 @@ void Forwarding::refuse_up(Line& line, const Observation& seen, const Net& net) 
   line.early.push(early);
 }
 
-// Reports serial frames for which no radio frame came, not even within the skew of the taps.
+// Reports frames of one tap for which none came by the other, not even within the skew of the taps.
 void Forwarding::expire_early(Line& line, std::int64_t now_us) {
+  for (std::size_t i = 0; i < line.ahead.size(); ++i) {
+    Passing& ahead = line.ahead.oldest(i);
+    if (ahead.passed != 0 || now_us - ahead.place.time_us <= context_.options.skew_us) continue;
+    ahead.passed = 1;
+    invented(line, ahead);
+  }
   for (std::size_t i = 0; i < line.early.size(); ++i) {
     Passing& early = line.early.oldest(i);
     if (early.passed != 0 || now_us - early.place.time_us <= context_.options.skew_us) continue;
@@ -212,7 +218,11 @@ void Forwarding::unheard(Line& line, const Passing& early) {
   }
   const bool began =
       context_.options.start_cold || early.place.time_us - context_.run.start_us > kStartUs;
-  const bool complete = context_.options.sniffer_complete && began;
+  // A damaged frame may have been what it forwards.
+  const std::int64_t at_us = early.place.time_us;
+  const bool damaged = context_.who.damaged(at_us - context_.response_us(line.sink),
+                                            at_us + context_.options.skew_us);
+  const bool complete = context_.options.sniffer_complete && began && !damaged;
   const Severity severity = complete ? Severity::kFail : Severity::kInconclusive;
   if (meant != nullptr && complete) {
     if (meant->owed) --line.up.owed;

@@ -164,11 +164,12 @@ void InterfaceWatch::judge_untold(std::uint16_t device, const Interface& interfa
                    {}});
 }
 
-void InterfaceWatch::finish(std::int64_t end_us) {
+void InterfaceWatch::finish() {
   if (!context_.run.has_time) return;
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     const auto device = static_cast<std::uint16_t>(i);
     const Node& node = nodes_[i];
+    const std::int64_t end_us = context_.end_us(device);
     for (const Interface& interface : node.interfaces) judge_untold(device, interface, end_us);
     const bool busy = !context_.busy_times(device).empty();
     if (!node.awaited || busy || end_us - node.accepted.time_us <= context_.response_us(device))

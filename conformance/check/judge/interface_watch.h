@@ -29,7 +29,7 @@ class InterfaceWatch {
   std::int64_t on_since(std::uint16_t node, machine::Link link) const;
   /// Returns the number of the message that shows whether the radio sends again; none otherwise.
   std::optional<std::uint16_t> awaits(std::uint16_t node) const { return nodes_[node].awaited; }
-  void finish(std::int64_t end_us);
+  void finish();
 
  private:
   struct Interface {

@@ -38,7 +38,17 @@ bool JoinCalls::request(std::uint16_t mote, const Observation& seen, const Reque
   const std::vector<MoteHypothesis>& set = std::as_const(motes_).set(mote);
   if (calls.logged && calls.open == 0 && set.size() == 1 && !set[0].unknown &&
       set[0].join.phase == Phase::kOutside) {
-    context_.report("J1-CALLED"_rule, Severity::kFail, seen.place, mote,
+    // Its log may have the call, or its end, beside the request that a capture has.
+    const auto its_call = [&](const Observation& other) {
+      return other.kind == Observation::Kind::kCall &&
+             other.node == context_.run.nodes[mote].name &&
+             std::holds_alternative<machine::JoinIsland>(*other.call);
+    };
+    const std::int64_t now = seen.place.time_us;
+    const bool beside = seen.node.empty() && (now - calls.told_us <= context_.options.skew_us ||
+                                              context_.soon(now, its_call));
+    context_.report("J1-CALLED"_rule, beside ? Severity::kInconclusive : Severity::kFail,
+                    seen.place, mote,
                     {"A join_request without a joinIsland call.", "Silence.", {}});
   }
   const bool soon = seen.place.timed() && before_at.timed() &&
@@ -58,17 +68,18 @@ bool JoinCalls::request(std::uint16_t mote, const Observation& seen, const Reque
   // Only the last call is open; what an earlier one left in a buffer cannot have waited for the
   // line.
   const std::int64_t called_us = calls.called.time_us;
-  if (!calls.last || calls.open != 1 || seen.node.empty() ||
+  if (!calls.last || calls.open != 1 ||
       context_.due_us(mote, called_us) != called_us + context_.response_us(mote)) {
     return as_member;
   }
-  if (fresh && before && before->seq_num == request.seq_num) {
+  const bool numbered = fresh && before && !seen.node.empty();
+  if (numbered && before->seq_num == request.seq_num) {
     context_.report("J1-SEQ"_rule, Severity::kWeak, seen.place, mote,
                     {"The first join_request of a joinIsland call has number " +
                          number(request.seq_num) + ", as had those of the call before.",
                      "Another number, which no late reply fits.",
                      {}});
-  } else if (fresh && before) {
+  } else if (numbered) {
     context_.findings.kept("J1-SEQ"_rule);
   }
   if (calls.last->descriptor == request.descriptor ||
@@ -150,8 +161,11 @@ void JoinCalls::told(std::uint16_t mote, const Observation& seen, const machine:
                      {}});
     return;
   }
+  const std::int64_t call_us = context_.join_call_us(mote) + context_.response_us(mote);
+  const bool before_log = context_.begun_before(mote, now, call_us);
   if (calls.logged && calls.open == 0) {
-    context_.report("J5-ONCE"_rule, Severity::kFail, seen.place, mote,
+    context_.report("J5-ONCE"_rule, before_log ? Severity::kInconclusive : Severity::kFail,
+                    seen.place, mote,
                     {std::string("joined(") + (joined.success ? "SUCCESS" : "FAIL") +
                          ") although no joinIsland call is open.",
                      "One joined event for each call.",
@@ -159,6 +173,7 @@ void JoinCalls::told(std::uint16_t mote, const Observation& seen, const machine:
   }
   if (!joined.success) judge_silent(mote, now);
   if (calls.open > 0) --calls.open;
+  calls.told_us = now;
   if (calls.open > 0) motes_.called(mote, now);  // One that waited begins.
   motes_.link_told(mote, now);
   const std::vector<MoteHypothesis> before = set;
@@ -260,7 +275,8 @@ void JoinCalls::told(std::uint16_t mote, const Observation& seen, const machine:
   const std::uint8_t expiries = motes_.expiries_min(mote);
   said.expected = "Not before expiry " + number(expiries) + " of the timer, " +
                   ms_text(expiries * context_.join_period_us(mote)) + ".";
-  context_.report("J8-FAIL"_rule, Severity::kFail, seen.place, mote, std::move(said));
+  context_.report("J8-FAIL"_rule, before_log ? Severity::kInconclusive : Severity::kFail,
+                  seen.place, mote, std::move(said));
 }
 
 // Reports a success that by a whole log is told later than in a golden trace, whichever state of
@@ -383,8 +399,8 @@ void JoinCalls::closes(std::uint16_t mote, std::int64_t end_us) {
                    {}});
 }
 
-void JoinCalls::finish(std::int64_t end_us) {
-  for (std::size_t i = 0; i < calls_.size(); ++i) closes(static_cast<std::uint16_t>(i), end_us);
+void JoinCalls::finish() {
+  for (std::uint16_t i = 0; i < calls_.size(); ++i) closes(i, context_.end_us(i));
 }
 
 }  // namespace rubric::check

@@ -26,7 +26,7 @@ class JoinCalls {
   void radio_set(std::uint16_t mote, bool on, std::int64_t now_us);
   /// Judges what the application was never told when a life of the mote ends, or the log.
   void closes(std::uint16_t mote, std::int64_t end_us);
-  void finish(std::int64_t end_us);
+  void finish();
 
  private:
   struct Calls {
@@ -36,8 +36,9 @@ class JoinCalls {
     std::optional<machine::JoinIsland> earlier;  ///< Open when the last one came.
     bool refusable = true;                       ///< That one may fail at once.
     Place called;
-    bool waits = false;              ///< It came while another one ran.
-    bool asks = false;               ///< It owes a join_request.
+    bool waits = false;                    ///< It came while another one ran.
+    bool asks = false;                     ///< It owes a join_request.
+    std::int64_t told_us = INT64_MIN / 2;  ///< When the last one ended.
     std::int64_t off_since_us = -1;  ///< Its application switched the radio off; -1: it is on.
     std::int64_t off_us = 0;         ///< How long it was off in the open call.
     std::optional<Request> asked;    ///< The last request,

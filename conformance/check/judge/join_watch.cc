@@ -303,10 +303,8 @@ void JoinWatch::clock_told(std::uint16_t mote, const Observation& seen, std::uin
   }
 }
 
-void JoinWatch::finish(std::int64_t end_us) {
-  for (std::size_t node = 0; node < debts_.size(); ++node) {
-    settle(static_cast<std::uint16_t>(node), end_us, true);
-  }
+void JoinWatch::finish() {
+  for (std::uint16_t i = 0; i < debts_.size(); ++i) settle(i, context_.end_us(i), true);
 }
 
 }  // namespace rubric::check

@@ -40,7 +40,7 @@ class JoinWatch {
   void surely_offered(std::uint16_t mote, std::uint32_t index, const Reply& reply);
   /// Judges the clock that the application of `mote` is given.
   void clock_told(std::uint16_t mote, const Observation& seen, std::uint32_t ms);
-  void finish(std::int64_t end_us);
+  void finish();
 
  private:
   static constexpr std::size_t kRoom = 64;  // For each node; no more are awaited.

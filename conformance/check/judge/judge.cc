@@ -28,16 +28,16 @@ Judge::Judge(const Run& run, const Options& options)
 Report Judge::judge() {
   Report report;
   for (std::uint32_t i = 0; i < run_.seen.size(); ++i) look(i);
-  join_calls_.finish(run_.end_us);
-  announcements_.finish(run_.end_us);
+  join_calls_.finish();
+  announcements_.finish();
   sinks_.finish();
-  joins_.finish(run_.end_us);
-  originals_.finish(run_.end_us, interfaces_);
-  forwarding_.finish(run_.end_us);
-  acks_.finish(run_.end_us);
-  synaptic_.finish(run_.end_us);
-  peis_.finish(run_.end_us);
-  interfaces_.finish(run_.end_us);
+  joins_.finish();
+  originals_.finish(interfaces_);
+  forwarding_.finish();
+  acks_.finish();
+  synaptic_.finish();
+  peis_.finish();
+  interfaces_.finish();
   context_.finish();
   report.frames = frames_ + run_.past.frames;
   report.facts = who_.facts;
@@ -104,9 +104,22 @@ void Judge::look(std::uint32_t index) {
       }
       if (is(mark.device, Role::kMote)) motes_.booted(mark.device, seen.place.time_us);
       break;
-    case Kind::kLinkAck:
-    case Kind::kDamaged: break;
+    case Kind::kDamaged: malformed(seen); break;
+    case Kind::kForeign:
+    case Kind::kLinkAck: break;
   }
+}
+
+// Reports a packet whose check sum is right, so that no line damaged it, and whose length is not.
+void Judge::malformed(const Observation& seen) {
+  if (seen.broken != "WIRE-AM-LENGTH"_rule) return;
+  std::uint16_t sender = kNobody;
+  if (seen.tap < who_.sink_of_tap.size()) sender = who_.sink_of_tap[seen.tap];
+  if (sender != kNobody && seen.to_mote) sender = who_.devices[sender].partner;
+  context_.report(seen.broken, Severity::kFail, seen.place, sender,
+                  {"The length of a packet on a serial line is not that of its bytes.",
+                   "The number of bytes after the header, at most 114.",
+                   {}});
 }
 
 void Judge::overdue(std::uint16_t device, std::int64_t now_us) {

@@ -31,6 +31,7 @@ class Judge {
   std::int64_t ack_timeout_us(machine::Address address) const;
   void look(std::uint32_t index);
   // Judges what a node should have done by now, where its log has all that it did.
+  void malformed(const Observation& seen);
   void overdue(std::uint16_t device, std::int64_t now_us);
   /// Forgets what the device knew before that time, at which its life began at the earliest: it
   /// may have heard what came since.

@@ -35,7 +35,9 @@ bool is_void(const Reply& reply, std::uint16_t am) {
 MoteJoins::MoteJoins(Context& context, std::size_t devices) : context_(context), motes_(devices) {
   for (std::size_t i = 0; i < devices; ++i) {
     MoteHypothesis start;
-    start.unknown = !context.options.start_cold;
+    const bool later =  // Its log begins when others have begun.
+        i < context.run.nodes.size() && context.run.nodes[i].from_us > context.run.start_us;
+    start.unknown = !context.options.start_cold || later;
     motes_[i].set.push_back(start);
   }
 }

@@ -259,9 +259,10 @@ void PeisWatch::overdue(std::uint16_t base, std::int64_t now_us) {
   overdue(base, bases_[base].down, false, now_us, false);
 }
 
-void PeisWatch::finish(std::int64_t end_us) {
+void PeisWatch::finish() {
   for (std::size_t base = 0; base < bases_.size(); ++base) {
     const auto index = static_cast<std::uint16_t>(base);
+    const std::int64_t end_us = context_.end_us(index);
     overdue_island(index, end_us);
     overdue(index, bases_[base].up, true, end_us, true);
     overdue(index, bases_[base].down, false, end_us, true);

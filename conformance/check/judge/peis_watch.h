@@ -53,7 +53,7 @@ class PeisWatch {
   void told_island(std::uint16_t base, const Observation& seen, std::int32_t island);
   /// Judges what the base station owes, by a log that has all that it does until then.
   void overdue(std::uint16_t base, std::int64_t now_us);
-  void finish(std::int64_t end_us);
+  void finish();
 
  private:
   static constexpr std::size_t kRoom = 64;

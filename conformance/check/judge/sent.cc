@@ -571,11 +571,10 @@ void Originals::judge_number(std::uint16_t node, const Observation& seen, const 
   context_.findings.kept("N12-REUSE"_rule);
 }
 
-void Originals::finish(std::int64_t end_us, const InterfaceWatch& interfaces) {
-  for (std::size_t node = 0; node < sent_.size(); ++node) {
-    ends(static_cast<std::uint16_t>(node), end_us, interfaces);
-    note_stale(context_, static_cast<std::uint16_t>(node), "WIRE-NET-PAYLOAD"_rule, stale_[node],
-               "On the air a message has ");
+void Originals::finish(const InterfaceWatch& interfaces) {
+  for (std::uint16_t node = 0; node < sent_.size(); ++node) {
+    ends(node, context_.end_us(node), interfaces);
+    note_stale(context_, node, "WIRE-NET-PAYLOAD"_rule, stale_[node], "On the air a message has ");
   }
 }
 

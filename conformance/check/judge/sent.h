@@ -64,7 +64,7 @@ class Originals {
   void told(std::uint16_t node, const Observation& seen, const machine::AckReceived& ack);
   /// Judges what the node accepted and did not send, at the end of its life or of the run.
   void ends(std::uint16_t node, std::int64_t end_us, const InterfaceWatch& interfaces);
-  void finish(std::int64_t end_us, const InterfaceWatch& interfaces);
+  void finish(const InterfaceWatch& interfaces);
   /// Judges what a message of the node holds, whoever wrote it.
   void judge_content(std::uint16_t node, const Observation& seen, const Net& net);
 
@@ -94,6 +94,7 @@ class Originals {
   void judge_address(std::uint16_t node, const Observation& seen, const Net& net,
                      machine::Link link, machine::Address own);
   void judge_result(std::uint16_t node, const Observation& seen, const Call& call);
+  std::int64_t patience_us(std::uint16_t node) const;
   bool awaits(std::uint16_t node, const Sent& sent, std::int64_t now_us) const;
   void judge_late(std::uint16_t node, const Observation& seen, const Call& call,
                   machine::Link link);

@@ -59,12 +59,14 @@ bool Originals::ill_acked(std::uint16_t node, const Net& message) const {
   });
 }
 
+std::int64_t Originals::patience_us(std::uint16_t node) const {
+  return kTimeouts * context_.ack_timeout_us(node) + context_.response_us(node);
+}
+
 // Returns whether its application may still be told of the message's end.
 bool Originals::awaits(std::uint16_t node, const Sent& sent, std::int64_t now_us) const {
-  const std::int64_t patience_us =
-      kTimeouts * context_.ack_timeout_us(node) + context_.response_us(node);
   return context_.device(node).application && sent.net.reliable == 1 && sent.told == 0 &&
-         now_us - sent.place.time_us <= patience_us;
+         now_us - sent.place.time_us <= patience_us(node);
 }
 
 void Originals::told(std::uint16_t node, const Observation& seen, const machine::AckReceived& ack) {
@@ -88,12 +90,14 @@ void Originals::told(std::uint16_t node, const Observation& seen, const machine:
     // Messages from a base station to other islands pass where no log and no tap is read, and of
     // many sent at once the first are forgotten here before their timeout.
     const Device& device = context_.device(node);
-    const bool elsewhere = device.role == Role::kBaseStation && !logs_peis(context_.run, node);
+    const bool elsewhere = !context_.has_lines(node) ||
+                           (device.role == Role::kBaseStation && !logs_peis(context_.run, node));
     const bool forgotten = ring.size() + 1 >= ring.kMost && awaits(node, ring.oldest(0), now);
+    const bool before = context_.begun_before(node, now, patience_us(node));
     const bool came = heard_ack(node, ack.seq_num, [](const Net&) { return true; });
     context_.report(came || !ack.success ? "T3-MATCH"_rule : "T3-SUCCESS"_rule,
-                    elsewhere || forgotten ? Severity::kInconclusive
-                                           : context_.without(node, device.first_us, now),
+                    elsewhere || forgotten || before ? Severity::kInconclusive
+                                                     : context_.without(node, device.first_us, now),
                     seen.place, node,
                     {what + " although the node has sent no reliable message with that number.",
                      "The number of the message that was acked.",
@@ -147,7 +151,10 @@ void Originals::told(std::uint16_t node, const Observation& seen, const machine:
     const Device& device = context_.device(node);  // A mote hears by radio alone.
     const bool all = device.hearing && device.role == Role::kMote;
     context_.report(strays_us_[node] >= match->place.time_us ? "T3-MATCH"_rule : "T3-SUCCESS"_rule,
-                    all ? Severity::kFail : context_.without(kNobody, match->place.time_us, now),
+                    all ? Severity::kFail
+                    : context_.has_lines(node)
+                        ? context_.without(kNobody, match->place.time_us, now)
+                        : Severity::kInconclusive,
                     seen.place, node,
                     {what + ", but no ack of it was heard.", "No receive_ack before the ack.", {}});
   } else if (!ack.success && seen.place.timed() && match->place.timed() &&

@@ -44,6 +44,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <unordered_map>
 #include <vector>
@@ -86,8 +87,10 @@ struct PairWatch {
   Place request;  ///< The last.
   std::uint16_t request_seq = 0;
   bool asked = false;
-  Place ack;                         ///< The last ack_join to this sink.
-  Place admitted;                    ///< The last one that may have made it a member.
+  Place ack;       ///< The last ack_join to this sink.
+  Place admitted;  ///< The last one that may have made it a member.
+  /// When it was reported before its ack_join was seen, by the skew of the taps.
+  std::int64_t ahead_us = std::numeric_limits<std::int64_t>::min() / 2;
   std::int64_t admitted_us = -1;     ///< When the sink has that one whole.
   ReqId ignored_ack = ReqId::kNone;  ///< Why the last one must have been ignored.
   bool report_due = false;      ///< Surely owed since `admitted`, and not yet complained about.

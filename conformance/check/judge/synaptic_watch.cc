@@ -524,10 +524,8 @@ void SynapticWatch::settle_at(std::uint16_t device, std::int64_t now_us) {
   }
 }
 
-void SynapticWatch::finish(std::int64_t end_us) {
-  for (std::size_t device = 0; device < nodes_.size(); ++device) {
-    settle(static_cast<std::uint16_t>(device), end_us);
-  }
+void SynapticWatch::finish() {
+  for (std::uint16_t i = 0; i < nodes_.size(); ++i) settle(i, context_.end_us(i));
 }
 
 }  // namespace rubric::check

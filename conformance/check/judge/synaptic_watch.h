@@ -35,7 +35,7 @@ class SynapticWatch {
   void told(std::uint16_t node, const Observation& seen, const machine::Notice& result);
   /// Judges what the node owes until now, by its log.
   void settle(std::uint16_t node, std::int64_t now_us);
-  void finish(std::int64_t end_us);
+  void finish();
   /// Judges synaptic data, a sound net_msg, that `node` sends.
   void sent(std::uint16_t node, const Observation& seen, const Net& net);
 

@@ -1,0 +1,119 @@
+// What a simulated network leaves: a capture, and a log; and both with changes.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <regex>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "codec/containers/reader.h"
+#include "conformance/check/input/read.h"
+#include "conformance/check/observation.h"
+#include "conformance/simulate/recorder.h"
+#include "conformance/simulate/scenarios.h"
+#include "conformance/simulate/simulation.h"
+#include "conformance/trace/print.h"
+
+namespace rubric::check {
+
+// The capture of a network, and the lines of its applications in ticks.
+struct Recorded {
+  std::string capture;
+  std::string log;
+};
+
+// Returns the capture, and what the applications and the nodes of the network did.
+inline Recorded all_of(const std::string& scenario, std::int64_t length_us = 0) {
+  const simulate::Scenario& network = *simulate::find_scenario(scenario);
+  simulate::Network made = simulate::make_network(network, {});
+  simulate::CaptureRecorder capture(made);
+  simulate::TraceRecorder trace(made, network.name);
+  simulate::Simulation simulation(std::move(made), {&capture, &trace});
+  simulation.run_until(length_us == 0 ? network.length_us : length_us);
+  return {capture.finish(), trace::print(trace.file())};
+}
+
+inline Recorded recorded(const std::string& scenario, std::int64_t length_us = 0) {
+  const Recorded all = all_of(scenario, length_us);
+  Recorded out{all.capture, {}};
+  const std::regex other(R"(\s*@\d+\s+\S+\s+[<>]\s+(?!\s|app|power).*)");
+  std::istringstream lines(all.log);
+  for (std::string line; std::getline(lines, line);) {
+    if (!std::regex_match(line, other)) out.log += line + "\n";
+  }
+  return out;
+}
+
+// Returns the log with other times, where `of` says so; a line is dropped where that is negative.
+inline std::string retimed(const std::string& log,
+                           const std::function<int(int tick, const std::string& line)>& of) {
+  const std::regex timed(R"((\s*@)(\d+)(.*))");
+  std::string out;
+  std::istringstream lines(log);
+  for (std::string line; std::getline(lines, line);) {
+    std::smatch parts;
+    if (std::regex_match(line, parts, timed)) {
+      const int tick = of(std::stoi(parts[2]), line);
+      if (tick < 0) continue;
+      line = parts[1].str() + std::to_string(tick) + parts[3].str();
+    }
+    out += line + "\n";
+  }
+  return out;
+}
+
+// Reads the capture as several files, and then the logs. `file_of` says of each packet, which it
+// may change, in which file it lies, from 0; or -1, and it is left out.
+inline Run read_apart(const std::string& capture, int files,
+                      const std::function<int(Packet&)>& file_of,
+                      const std::vector<std::string>& logs) {
+  RunReader reader;
+  std::vector<std::uint32_t> opened;
+  for (int i = 0; i < files; ++i) opened.push_back(reader.open("capture" + std::to_string(i)));
+  const std::unique_ptr<Reader> packets = make_reader(InputFormat::kPcapng, {});
+  auto take = [&](const Packet& packet) {
+    Packet one = packet;
+    const int file = file_of(one);
+    if (file < 0) return;
+    reader.take(opened[static_cast<std::size_t>(file)], one,
+                packets->interfaces()[one.interface_id].name);
+  };
+  packets->feed(Bytes(reinterpret_cast<const std::uint8_t*>(capture.data()), capture.size()),
+                PacketSink(take));
+  packets->finish(PacketSink(take));
+  std::string error;
+  for (std::size_t i = 0; i < logs.size(); ++i) {
+    EXPECT_TRUE(reader.add_bytes("log" + std::to_string(i), logs[i], error)) << error;
+  }
+  return reader.finish();
+}
+
+// Returns the log as if each node had kept one, with those of its lines that `has` wants.
+inline std::vector<std::string> log_of_each(
+    const std::string& log, const std::function<bool(const std::string& line)>& has) {
+  const std::regex of_a_node(R"((?:%node|\s*@\d+)\s+(\S+).*)");
+  std::vector<std::pair<std::string, std::string>> logs;  // By node.
+  std::string head;
+  std::istringstream lines(log);
+  for (std::string line; std::getline(lines, line);) {
+    std::smatch parts;
+    if (!std::regex_match(line, parts, of_a_node)) {
+      if (line[0] == '%' && !line.starts_with("%link")) head += line + "\n";
+    } else if (line[0] == '%') {
+      logs.emplace_back(parts[1], line + "\ncase run\n");
+    } else if (has(line)) {
+      for (auto& [name, text] : logs) text += name == parts[1] ? line + "\n" : "";
+    }
+  }
+  std::vector<std::string> out;
+  for (const auto& [name, text] : logs) out.push_back(head + text);
+  return out;
+}
+
+}  // namespace rubric::check
