@@ -1,17 +1,21 @@
 #include "tools/cli/command.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <memory>
 #include <optional>
+#include <sstream>
 #include <system_error>
 
 #include "codec/reflect/suggest.h"
 #include "codec/text/text.h"
 #include "tools/cli/exit_codes.h"
+#include "tools/cli/terminal.h"
 
 namespace rubric::cli {
 namespace {
@@ -51,6 +55,65 @@ std::vector<std::string> option_names(const CLI::App& app) {
   return names;
 }
 
+/// Help that fits the terminal, and says types as people do: "--seed N (0 to 99)=1".
+class Help final : public CLI::Formatter {
+  std::string make_option(const CLI::Option* option, bool is_positional) const override {
+    constexpr std::size_t kTextColumn = 30;
+    std::string head = make_option_name(option, is_positional) + make_option_opts(option);
+    const std::string& text = option->get_description();
+    if (head.size() + 4 <= kTextColumn) {
+      head.resize(kTextColumn - 2, ' ');
+      return lines("  " + head, text, kTextColumn);
+    }
+    return lines("  ", head, 6) + lines(std::string(kTextColumn, ' '), text, kTextColumn);
+  }
+
+  std::string make_option_opts(const CLI::Option* option) const override {
+    if (option->get_type_size() == 0) return {};
+    // The library has "UINT:1 to 4", "TEXT:{text,json}", "TEXT".
+    const std::string type = option->get_type_name();
+    const std::string base = type.substr(0, type.find(':'));
+    const std::string rest = base == type ? "" : type.substr(base.size() + 1);
+    const bool choice = rest.starts_with('{');
+    std::string out = choice                            ? " " + rest
+                      : base == "UINT" || base == "INT" ? " N"
+                      : base == "FLOAT"                 ? " NUMBER"
+                      : base.empty()                    ? ""
+                                                        : " " + base;
+    std::string value = option->get_default_str();
+    const bool byte = value.size() == 1 && static_cast<unsigned char>(value[0]) < ' ';
+    if (byte) value = std::to_string(static_cast<int>(value[0]));  // A number of one byte.
+    if (value.find_first_not_of(' ') != value.npos) out += "=" + value;
+    if (option->get_expected_max() == CLI::detail::expected_max_vector_size) out += " ...";
+    if (!choice && !rest.empty()) out += " (" + rest + ")";
+    for (const CLI::Option* other : option->get_needs()) out += ", with " + other->get_name();
+    return out;
+  }
+
+  std::string make_subcommand(const CLI::App* sub) const override {
+    return lines(fmt::format("  {:<28}", sub->get_name()), sub->get_description(), 30);
+  }
+
+  // Examples, which begin with a blank, stay as they are.
+  std::string make_footer(const CLI::App* app) const override {
+    std::string out;
+    std::istringstream footer(app->get_footer());
+    for (std::string line; std::getline(footer, line);) {
+      out += line.starts_with(' ') ? line + "\n" : lines("", line, 0);
+    }
+    return out;
+  }
+
+  static std::string lines(const std::string& first, const std::string& text, std::size_t hang) {
+    return text::broken_at_blanks(first, text, columns(0, STDOUT_FILENO), hang);
+  }
+};
+
+template <class Number>
+CLI::Validator range(Number min, Number max) {
+  return CLI::Range(min, max).description(fmt::format("{} to {}", min, max));
+}
+
 }  // namespace
 
 void exit_with(int code) { throw Exit(code); }
@@ -78,17 +141,17 @@ Option& Option::one_of(std::vector<std::string> values) {
 }
 
 Option& Option::between(int min, int max) {
-  option_->check(CLI::Range(min, max));
+  option_->check(range(min, max));
   return *this;
 }
 
 Option& Option::between(std::uint64_t min, std::uint64_t max) {
-  option_->check(CLI::Range(min, max));
+  option_->check(range(min, max));
   return *this;
 }
 
 Option& Option::between(double min, double max) {
-  option_->check(CLI::Range(min, max));
+  option_->check(range(min, max));
   return *this;
 }
 
@@ -153,6 +216,7 @@ bool Option::is_given() const { return option_->count() != 0; }
 Command::Command(const std::string& name, const std::string& description)
     : own_(std::make_unique<CLI::App>(description)), app_(own_.get()) {
   app_->name(name);
+  app_->formatter(std::make_shared<Help>());  // Subcommands inherit it.
 }
 
 Command::Command(CLI::App& app, const Command& parent) : app_(&app), parent_(&parent) {}
@@ -256,6 +320,14 @@ int Command::complain_about_extras() const {
 
 int Command::parse_and_run(int argc, char** argv) {
   const std::vector<std::string> commands = subcommand_names();
+  if (!commands.empty() && argc == 1) return complain("a command is needed");
+  if (argc > 1 && argv[1][0] == '-') {  // Else the command that misses hides a wrong option.
+    const std::string bare = std::string(argv[1]).substr(0, std::string_view(argv[1]).find('='));
+    const std::vector<std::string> known = option_names(*app_);
+    if (!commands.empty() && std::find(known.begin(), known.end(), bare) == known.end()) {
+      return complain(fmt::format("unknown option {}{}", bare, reflect::did_you_mean(bare, known)));
+    }
+  }
   if (!commands.empty() && argc > 1 && argv[1][0] != '-' &&
       std::find(commands.begin(), commands.end(), argv[1]) == commands.end()) {
     return complain(

@@ -346,7 +346,7 @@ class Runs {
       return std::find(std::begin(kGraver), std::end(kGraver), code) - std::begin(kGraver);
     };
     for (const auto& [code, count] : counts_) {
-      ends += fmt::format("{} {} with {}", ends.empty() ? ":" : ",", count, code);
+      ends += fmt::format("{} {} ended with {}", ends.empty() ? ":" : ",", count, code);
       if (rank(code) > rank(gravest)) gravest = code;
     }
     text::print(stderr, "rubric {}: {}{}{}\n", job_.command, text::counted(next_line_, "run"),

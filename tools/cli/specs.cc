@@ -130,8 +130,12 @@ const reflect::Protocol& single_protocol_of(const std::string& spec) {
                                            "--spec list",
                                            spec, what));
   }
-  throw UsageError(
-      "--spec", fmt::format("unknown protocol '{}'{}", spec, reflect::did_you_mean(spec, names)));
+  const std::string meant = reflect::did_you_mean(spec, names);
+  throw UsageError("--spec",
+                   fmt::format("unknown protocol '{}'{}", spec,
+                               meant.empty() ? "; --spec list prints those that ship, and "
+                                               "the name of a file ends with .ksy"
+                                             : meant));
 }
 
 /// Returns what --spec has for this protocol.

@@ -160,6 +160,10 @@ int check_each_run(const CheckOptions& options) {
   if (!options.frames.empty()) throw cli::UsageError("--frames", "of which run? --each has many");
   if (!options.write.path.empty()) throw cli::UsageError("--write", "no source is a line in use");
   if (options.keep_minutes) throw cli::UsageError("--keep", "no source grows");
+  if (!options.report.empty()) throw cli::UsageError("--report", "of which run? --each has many");
+  if (options.format != "text" && options.format != "jsonl") {
+    throw cli::UsageError("--format", "--each prints a line of JSON for each run");
+  }
   const check::Options judged = oracle_options(options);
   const report::KnownFailures expected = expectations(options);
   const std::string known = options.expect.empty() ? "" : cli::text_of_file(options.expect);

@@ -118,7 +118,14 @@ void settle_target(ConvertOptions& options) {
     options.output = options.input.files.back();
     options.input.files.pop_back();
   }
+  if (options.output.empty() && options.format.empty()) {
+    throw cli::UsageError("OUT",
+                          "is missing: name the file to write last, or give --format for stdout");
+  }
   if (options.output.empty()) options.output = "-";
+  if (std::filesystem::is_directory(options.output)) {
+    throw cli::UsageError("OUT", "'" + options.output + "' is a folder; name a file in it");
+  }
   if (options.format.empty()) options.format = container_of(options.output);
   if (options.format.empty()) {
     throw cli::UsageError("--format", "is needed, as '" + options.output +

@@ -87,7 +87,7 @@ void add_diff(cli::Command& app) {
   cli::Command& sub =
       app.add_subcommand("diff", "Find the shortest trace on which two implementations differ");
   sub.footer(kDiffFooter);
-  sub.add_option("traces", options->traces,
+  sub.add_option("TRACES", options->traces,
                  "Golden traces and folders of them; default: those of the kit")
       .type_name("TRACE");
   add_protocol_option(sub, options->protocol);

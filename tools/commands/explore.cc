@@ -204,7 +204,8 @@ std::string text_of(const Result& result, const Verdict& verdict) {
   const auto to = std::back_inserter(out);
   fmt::format_to(to, "states       {}\n", p.states);
   if (result.by_mote) {
-    out += "by           one mote after the other, as their steps are independent\n";
+    out +=
+        "order        one mote's steps before the next one's (--no-partial-order: every order)\n";
   } else if (result.represented_states != p.states) {
     fmt::format_to(to, "stand for    {} states, motes and sinks exchanged\n",
                    result.represented_states);
@@ -220,9 +221,9 @@ std::string text_of(const Result& result, const Verdict& verdict) {
                  static_cast<double>(result.memory_bytes) / 1e6, result.memory_per_state_bytes,
                  result.node_states, result.frames);
   if (result.omission_probability == 0) {
-    out += "left out     none: each state is known by a number of its own\n";
+    out += "missed       none: every state was kept whole\n";
   } else {
-    fmt::format_to(to, "left out     a state at most with probability {:.1e}\n",
+    fmt::format_to(to, "missed       a state at most with probability {:.1e}\n",
                    result.omission_probability);
   }
   if (result.liveness_states != 0) {

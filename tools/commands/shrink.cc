@@ -149,7 +149,7 @@ void add_shrink(cli::Command& app) {
   auto options = std::make_shared<ShrinkOptions>();
   cli::Command& sub = app.add_subcommand("shrink", "Make a failing trace as small as it can be");
   sub.footer(kShrinkFooter);
-  sub.add_option("trace", options->trace, "A .rtr file").required().type_name("TRACE");
+  sub.add_option("TRACE", options->trace, "A .rtr file").required();
   sub.add_option("--target", options->target, "Run this implementation, as in rubric test")
       .required();
   add_protocol_option(sub, options->protocol);

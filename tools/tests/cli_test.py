@@ -70,7 +70,7 @@ class ExitCodes(ProgramTest):
             ("decode", "--as", "join_requst"): "did you mean 'join_request'?",
             ("decode", "--as", "config", "--input-format", "pcap"): "--as",
             ("decode", "--input-format", "bare"): "--as",
-            (): "subcommand",
+            (): "a command is needed",
         }
         for words, wanted in cases.items():
             with self.subTest(words):
@@ -121,6 +121,10 @@ class ExitCodes(ProgramTest):
     def test_help_is_0(self):
         self.assertEqual(run("--help").returncode, CLEAN)
         self.assertIn("--filter", run("decode", "--help").stdout.decode())
+        for words in (("--help",), ("decode", "--help"), ("check", "--help")):
+            for line in run(*words).stdout.decode().splitlines():
+                self.assertTrue(len(line) <= 100 or line.startswith("  rubric "), line)
+        self.assertIn("unknown option --foo", run("--foo").stderr.decode())
         self.assertRegex(run("--version").stdout.decode(), r"^\d+\.\d+")
 
 

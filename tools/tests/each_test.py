@@ -222,6 +222,9 @@ class Each(testing.Folder):
                       ("--each", "--follow"), ("--each", "--frames", "1..2"),
                       ("--each", "--jobs", "0")):
             self.assertEqual(run("check", CAPTURES[0], *words).returncode, USAGE, words)
+        for words in (("--report", self.folder / "report"), ("--format", "junit")):
+            done = run("check", "--each", self.runs, *words)
+            self.assertEqual((done.returncode, done.stdout), (USAGE, ""), words)
 
 
 if __name__ == "__main__":

@@ -52,7 +52,7 @@ class Explore(Folder):
         self.assertEqual(plain["omission_probability"], 0)
         text = explore("--motes", "2", *FAULTS, "--no-partial-order").stdout
         self.assertIn(f"stand for    {plain['states']} states", text)
-        self.assertIn("one mote after the other", explore("--motes", "2", *FAULTS).stdout)
+        self.assertIn("one mote's steps before the next one's", explore("--motes", "2", *FAULTS).stdout)
 
     def test_liveness(self):
         done = explore(*FAULTS, "--liveness")
