@@ -204,7 +204,6 @@ struct Run {
   /// Logs beside captures. A failure must be found wherever in its bounds a log lies; where its
   /// clock is not known, also without it.
   std::vector<LogClock> logs;
-  bool order_guessed = false;  ///< It is one of several orders that are tried.
   /// In order of time. What compares times before and after one is inconclusive.
   std::vector<ClockStep> steps;
   Past past;

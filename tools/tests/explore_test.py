@@ -32,7 +32,7 @@ class Explore(Folder):
         # The machine decides how many; explorer_test has one network's exact numbers.
         self.assertRegex(done.stdout, r"states +[1-9]\d{2,}\n")
         self.assertRegex(done.stdout, r"transitions +[1-9]\d{2,}\n")
-        for line in ("depth        ", "bytes a state", "million states/s", "left out",
+        for line in ("depth        ", "bytes a state", "million states/s", "missed",
                      "second_offer", "verdict      holds"):
             self.assertIn(line, done.stdout)
         self.assertEqual(done.stderr, "")  # No progress where stderr is no terminal.
@@ -52,7 +52,7 @@ class Explore(Folder):
         self.assertEqual(plain["omission_probability"], 0)
         text = explore("--motes", "2", *FAULTS, "--no-partial-order").stdout
         self.assertIn(f"stand for    {plain['states']} states", text)
-        self.assertIn("one mote's steps before the next one's", explore("--motes", "2", *FAULTS).stdout)
+        self.assertIn("order        one mote's steps", explore("--motes", "2", *FAULTS).stdout)
 
     def test_liveness(self):
         done = explore(*FAULTS, "--liveness")

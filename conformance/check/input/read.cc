@@ -146,19 +146,25 @@ bool begin_logs(Run& run) {
 }
 
 // Leaves out what networks with another PAN radiate (TinyOS's AM group): nodes of this one, that
-// with most frames, neither take nor acknowledge it.
+// with most messages, neither take nor acknowledge it.
 void leave_out_networks(Run& run) {
   constexpr std::uint16_t kEveryPan = 0xFFFF;
   std::map<std::uint16_t, std::size_t> frames;
   const auto radio = [](const Observation& seen) {
     return seen.kind == Observation::Kind::kRadio && seen.node.empty() && seen.pan != kEveryPan;
   };
+  std::map<std::uint16_t, std::size_t> messages;
   for (const Observation& seen : run.seen) {
-    if (radio(seen)) ++frames[seen.pan];
+    if (!radio(seen)) continue;
+    ++frames[seen.pan];
+    const std::uint8_t type = seen.frame.type;
+    const bool ours =
+        type == am::kJoin || type == am::kJoinReply || type == am::kAckJoin || type == am::kNet;
+    messages[seen.pan] += ours ? 1 : 0;
   }
   if (frames.size() < 2) return;
   const auto most =
-      std::ranges::max_element(frames, {}, [](const auto& one) { return one.second; });
+      std::ranges::max_element(messages, {}, [](const auto& one) { return one.second; });
   for (const auto& [pan, count] : frames) {
     if (pan == most->first) continue;
     char text[128];
@@ -172,6 +178,37 @@ void leave_out_networks(Run& run) {
   }
 }
 
+// Takes the stamps of a capture that only tell the second, or its tenth, for none: most frames
+// share theirs with the one before, and what lies between two is not known.
+void leave_out_coarse_stamps(Run& run) {
+  constexpr std::int64_t kCoarseUs = 100'000;
+  struct Stamps {
+    std::int64_t last_us = kNoStamp;
+    std::size_t frames = 0;
+    std::size_t same = 0;
+    bool coarse = true;
+  };
+  std::vector<Stamps> files(run.files.size());
+  for (const Observation& seen : run.seen) {
+    Stamps& file = files[seen.place.file];
+    const std::int64_t time_us = seen.place.time_us;
+    if (!seen.node.empty() || time_us == kNoStamp) continue;
+    file.coarse = file.coarse && time_us % kCoarseUs == 0;
+    ++file.frames;
+    file.same += time_us == file.last_us ? 1 : 0;
+    file.last_us = time_us;
+  }
+  const auto coarse = [](const Stamps& file) { return file.coarse && 2 * file.same > file.frames; };
+  for (Observation& seen : run.seen) {
+    if (seen.node.empty() && coarse(files[seen.place.file])) seen.place.time_us = kNoStamp;
+  }
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    if (!coarse(files[i])) continue;
+    run.facts.push_back(run.files[i] +
+                        " has stamps of whole seconds or tenths, which are left out");
+  }
+}
+
 // Makes times count from `begin_us`, else from the first one, and orders what several taps saw.
 Run in_one_order(Run run, const AlignOptions& options, std::optional<std::int64_t>& begin_us) {
   const auto by_file = [](const Observation& a, const Observation& b) {
@@ -181,6 +218,7 @@ Run in_one_order(Run run, const AlignOptions& options, std::optional<std::int64_
     std::stable_sort(run.seen.begin(), run.seen.end(), by_file);
   }
   leave_out_networks(run);
+  leave_out_coarse_stamps(run);
   find_directions(run);
   mend_steps(run);
   const bool own_zero = begin_logs(run);

@@ -73,7 +73,6 @@ enum class When : std::uint8_t { kLikely, kEarly, kLate, kNever };
 
 Report judge_with(const Run& run, const Options& options, When when) {
   Run now = run;
-  now.order_guessed = true;
   now.loose.clear();
   now.slack_taps.clear();
   const std::int64_t later_us = when == When::kEarly  ? run.slack_us / 2

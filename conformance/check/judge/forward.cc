@@ -168,10 +168,9 @@ bool Forwarding::sent_on_radio(std::uint16_t sink, const Observation& seen, cons
     refuse_down(*line, seen, net);
     return true;
   }
-  // Only a complete run, in its order, shows that nobody gave the sink this message.
+  // Only a complete run shows that nobody gave the sink this message.
   const std::int64_t now = seen.place.time_us;
-  const bool sure = !context_.run.order_guessed &&
-                    context_.without_ever(kNobody, now) == Severity::kFail &&
+  const bool sure = context_.without_ever(kNobody, now) == Severity::kFail &&
                     context_.on_line(sink, Severity::kFail) == Severity::kFail;
   const bool held = context_.busy(sink, line->island_changed_us, now);
   if (!sure || held || line->changing(now)) return true;
