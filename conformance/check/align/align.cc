@@ -14,6 +14,7 @@
 #include "conformance/check/align/align_frames.h"
 #include "conformance/check/align/align_logs.h"
 #include "conformance/check/align/align_order.h"
+#include "conformance/check/message.h"
 
 namespace rubric::check {
 namespace {
@@ -274,11 +275,17 @@ class Alignment {
     }
   }
 
-  // Two logs of one line are about one tap.
+  // Two logs of one line are about one tap. What is for all islands may pass on the lines of many.
   void join_lines(const std::vector<Pair>& passed) {
     std::vector<std::uint32_t> tap(run_.taps.size());
     std::iota(tap.begin(), tap.end(), 0);
-    for (const Pair& pair : passed) tap[run_.seen[pair.b].tap] = run_.seen[pair.a].tap;
+    for (const Pair& pair : passed) {
+      const Observation& seen = run_.seen[pair.b];
+      Net net;
+      const bool message = seen.frame.type == am::kNet && parse_net(seen.frame.payload, net);
+      const bool all = message && net.dest.pid == machine::kBroadcastPid;
+      if (!all) tap[seen.tap] = run_.seen[pair.a].tap;
+    }
     for (Observation& seen : run_.seen) seen.tap = tap[seen.tap];
   }
 
