@@ -452,6 +452,18 @@ void MoteJoins::net_msg(std::uint16_t mote, const Observation& seen, const Net& 
     context_.findings.kept("N1-SRC"_rule);
     return;
   }
+  const auto member_known = [&](const MoteHypothesis& h) {
+    return !h.unknown && h.join.phase == Phase::kMember;
+  };
+  const std::uint16_t am = context_.device(mote).am;
+  if (net.src.devid != am && std::ranges::none_of(set, member_known)) {
+    context_.report("N1-SRC"_rule, context_.without_ever(mote, now), seen.place, mote,
+                    {"A net_msg with src " + text_of(net.src) + " from AM address " + number(am) +
+                         ": no join gives a mote another devid (J4-ADDRESS).",
+                     "src " + text_of(machine::Address{net.src.pid, am}) + ".",
+                     {}});
+    return;
+  }
   // Of two motes with one id in two islands it may be the other.
   const bool only = context_.next_of_am[context_.mote_of_am[context_.device(mote).am]] == kNobody;
   std::vector<MoteHypothesis> before = set;
