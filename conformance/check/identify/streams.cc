@@ -114,9 +114,11 @@ std::uint16_t Streams::assign(std::uint32_t index, bool& repeat) {
        i = next_[i], ++looked_at) {
     Stream& stream = streams_[i];
     const machine::Frame& before = run_.seen[stream.last].frame;
+    // Only a request may be of a new life that begins with this number. Of all else a copy of the
+    // last frame is one, however late: the recorder's clock may have stepped between the two.
+    const bool copy = now - stream.last_us <= kLinkRepeatUs || seen.frame.type != am::kJoin;
     if (stream.dsn == seen.dsn && before.dest == seen.frame.dest &&
-        before.type == seen.frame.type && equal(before.payload, seen.frame.payload) &&
-        now - stream.last_us <= kLinkRepeatUs) {
+        before.type == seen.frame.type && equal(before.payload, seen.frame.payload) && copy) {
       repeat = true;
       stream.last_us = now;
       return i;

@@ -84,10 +84,11 @@ TEST(Legal, NoAlarmComesBack) {
       {"host_loops_radiated", 975, "exact"},      // The other sink's own message.
       {"ack_join_often", 12, "drops_and_steps"},  // A step between repeats; the reply was dropped.
       {"stated_slow", 13, "steps_forth"},         // A step among reactions that all are slow.
-      {"stated_slow_join_timer", 364, "steps_back"},  // A step as long as the silence before it.
-      {"mixed", 6602, "steps_often"},                 // Two steps forth in one join.
-      {"stated_slow", 294, "steps_often"},            // A step forth that looks like a silence.
-      {"mixed", 16304, "steps_often"},                // The same, with packets that are missing.
+      {"link_ack_lost_same_dsn", 237, "steps_forth"},  // A step between a frame and its copy.
+      {"stated_slow_join_timer", 364, "steps_back"},   // A step as long as the silence before it.
+      {"mixed", 6602, "steps_often"},                  // Two steps forth in one join.
+      {"stated_slow", 294, "steps_often"},             // A step forth that looks like a silence.
+      {"mixed", 16304, "steps_often"},                 // The same, with packets that are missing.
       {"seq_near_end", 71,
        "drops"},  // An ack of a message that was dropped, with a report's number.
       {"unconfirmed_requests_again", 59, "drops"},  // The request of a later ack_join was dropped.
