@@ -137,8 +137,13 @@ void Announcements::announce(SinkWatch& sink, const Place& at, machine::Address 
 void Announcements::refuse_report(SinkWatch& sink, PairWatch& watch, const Place& at,
                                   const Admission& announced, bool notice, bool astray) {
   const std::uint16_t mote_am = announced.devid;
+  const std::string what = notice ? "moteJoined" : "serial_joined";
+  bool of_another = false;
+  // In one file the order of its frames tells which came first.
   const auto its_ack = [&](const Observation& seen) {
     AckJoin ack;
+    if (seen.place.file == at.file && seen.place.frame > at.frame) return false;
+    of_another = seen.place.file != at.file;
     return seen.kind == Observation::Kind::kRadio && seen.frame.type == am::kAckJoin &&
            parse_ack_join(seen.frame.payload, ack) && ack.src.devid == mote_am &&
            ack.dest.pid == sink.island;
@@ -146,6 +151,12 @@ void Announcements::refuse_report(SinkWatch& sink, PairWatch& watch, const Place
   if (!context_.device(sink.device).whole && at.timed() && context_.soon(at.time_us, its_ack)) {
     watch.know_nothing();
     watch.ahead_us = at.time_us;
+    if (!of_another) return;
+    context_.report("J6-ONLY"_rule, Severity::kInconclusive, at, sink.device,
+                    {what + " of mote " + number(mote_am) + ", whose ack_join came " +
+                         "later by less than two clocks may differ.",
+                     what + " only after an ack_join with the number of the request.",
+                     {}});
     return;
   }
   const SinkHypothesis& h = watch.set.back();
@@ -154,7 +165,6 @@ void Announcements::refuse_report(SinkWatch& sink, PairWatch& watch, const Place
     said.hypotheses.push_back({SinkJoins::sentence(*it), "No announcement of this mote.",
                                "The mote is announced as a new member."});
   }
-  const std::string what = notice ? "moteJoined" : "serial_joined";
   ReqId rule = "J6-ADD"_rule;
   const bool has_ack = watch.ack.frame != 0;
   // The request to which the ack belongs may have escaped as well.
