@@ -307,26 +307,28 @@ int Command::complain(const std::string& what) const {
   return kExitUsage;
 }
 
+int Command::complain_about_option(const std::string& bare) const {
+  return complain(
+      fmt::format("unknown option {}{}", bare, reflect::did_you_mean(bare, option_names(*app_))));
+}
+
 int Command::complain_about_extras() const {
   const std::vector<std::string> extras = app_->remaining();
   const std::string word = extras.empty() ? std::string{} : extras.front();
-  const std::string bare = word.substr(0, word.find('='));
-  if (word.starts_with('-')) {
-    return complain(
-        fmt::format("unknown option {}{}", bare, reflect::did_you_mean(bare, option_names(*app_))));
-  }
+  if (word.starts_with('-')) return complain_about_option(word.substr(0, word.find('=')));
   return complain(fmt::format("unexpected argument '{}'", word));
 }
 
 int Command::parse_and_run(int argc, char** argv) {
   const std::vector<std::string> commands = subcommand_names();
   if (!commands.empty() && argc == 1) return complain("a command is needed");
-  if (argc > 1 && argv[1][0] == '-') {  // Else the command that misses hides a wrong option.
-    const std::string bare = std::string(argv[1]).substr(0, std::string_view(argv[1]).find('='));
+  const std::string_view first = argc > 1 ? argv[1] : "";
+  if (!commands.empty() && first.starts_with('-')) {
+    const std::string bare(first.substr(0, first.find('=')));
     const std::vector<std::string> known = option_names(*app_);
-    if (!commands.empty() && std::find(known.begin(), known.end(), bare) == known.end()) {
-      return complain(fmt::format("unknown option {}{}", bare, reflect::did_you_mean(bare, known)));
-    }
+    // The command that is missing, too, would hide it.
+    const bool is_known = std::find(known.begin(), known.end(), bare) != known.end();
+    if (!is_known) return complain_about_option(bare);
   }
   if (!commands.empty() && argc > 1 && argv[1][0] != '-' &&
       std::find(commands.begin(), commands.end(), argv[1]) == commands.end()) {

@@ -128,6 +128,7 @@ class Command {
  private:
   const Command& innermost() const;
   int complain(const std::string& what) const;
+  int complain_about_option(const std::string& bare) const;
   int complain_about_extras() const;
   std::vector<std::string> subcommand_names() const;
 

@@ -19,7 +19,7 @@
 namespace rubric::check {
 namespace {
 
-constexpr std::size_t kPassedMin = 3;
+constexpr std::size_t kPassedMin = 3;  // Fewer frames between two logs may be a chance.
 
 std::string decimal(double value, int places, const char* unit) {
   char text[64];
@@ -275,7 +275,8 @@ class Alignment {
     }
   }
 
-  // Two logs of one line are about one tap. What is for all islands may pass on the lines of many.
+  // Gives the lines that pass such a frame one tap: both ends kept a log of one line. Frames for
+  // all islands tell nothing, as they pass on the lines of many.
   void join_lines(const std::vector<Pair>& passed) {
     std::vector<std::uint32_t> tap(run_.taps.size());
     std::iota(tap.begin(), tap.end(), 0);

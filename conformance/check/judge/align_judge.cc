@@ -246,7 +246,7 @@ struct Blamed {
   }
 };
 
-// Returns what each log shows without the other files, to which only its clock may not fit.
+// Returns what each log shows by itself: however far its clock is off, its own lines fit it.
 Blamed blamed_alone(const Run& run, Options options) {
   options.sniffer_complete = options.start_cold = false;  // Said of all of them together.
   Blamed out;

@@ -138,20 +138,19 @@ void Announcements::refuse_report(SinkWatch& sink, PairWatch& watch, const Place
                                   const Admission& announced, bool notice, bool astray) {
   const std::uint16_t mote_am = announced.devid;
   const std::string what = notice ? "moteJoined" : "serial_joined";
-  bool of_another = false;
   // In one file the order of its frames tells which came first.
   const auto its_ack = [&](const Observation& seen) {
     AckJoin ack;
     if (seen.place.file == at.file && seen.place.frame > at.frame) return false;
-    of_another = seen.place.file != at.file;
     return seen.kind == Observation::Kind::kRadio && seen.frame.type == am::kAckJoin &&
            parse_ack_join(seen.frame.payload, ack) && ack.src.devid == mote_am &&
            ack.dest.pid == sink.island;
   };
-  if (!context_.device(sink.device).whole && at.timed() && context_.soon(at.time_us, its_ack)) {
+  const bool open = !context_.device(sink.device).whole && at.timed();
+  if (const Observation* const ack = open ? context_.soon(at.time_us, its_ack) : nullptr) {
     watch.know_nothing();
     watch.ahead_us = at.time_us;
-    if (!of_another) return;
+    if (ack->place.file == at.file) return;
     context_.report("J6-ONLY"_rule, Severity::kInconclusive, at, sink.device,
                     {what + " of mote " + number(mote_am) + ", whose ack_join came " +
                          "later by less than two clocks may differ.",

@@ -114,16 +114,16 @@ struct Context {
            begun_us_[node] >= time_us &&
            time_us - std::max(run.start_us, run.nodes[node].from_us) <= before_us;
   }
-  /// Returns whether such a thing was seen by the skew of the taps later: it may be the cause.
+  /// Returns what was seen by the skew of the taps later and may be the cause; nullptr if nothing.
   template <class Cause>
-  bool soon(std::int64_t time_us, Cause is_cause) const {
+  const Observation* soon(std::int64_t time_us, Cause is_cause) const {
     const auto from = std::ranges::lower_bound(
         run.seen, time_us, {}, [](const Observation& seen) { return seen.place.time_us; });
     for (auto at = from; at != run.seen.end(); ++at) {
-      if (at->place.time_us > time_us + options.skew_us) return false;
-      if (is_cause(*at)) return true;
+      if (at->place.time_us > time_us + options.skew_us) return nullptr;
+      if (is_cause(*at)) return &*at;
     }
-    return false;
+    return nullptr;
   }
   /// Returns when an answer to what the node has whole at `whole_us` is overdue. What waited for a
   /// line or an application that was busy, by the node's log, may take as long again behind others.

@@ -46,7 +46,7 @@ bool JoinCalls::request(std::uint16_t mote, const Observation& seen, const Reque
     };
     const std::int64_t now = seen.place.time_us;
     const bool beside = seen.node.empty() && (now - calls.told_us <= context_.options.skew_us ||
-                                              context_.soon(now, its_call));
+                                              context_.soon(now, its_call) != nullptr);
     context_.report("J1-CALLED"_rule, beside ? Severity::kInconclusive : Severity::kFail,
                     seen.place, mote,
                     {"A join_request without a joinIsland call.", "Silence.", {}});

@@ -88,6 +88,7 @@ bool all_lines(const std::string&) { return true; }
 bool no_radio(const std::string& line) {
   return !std::regex_match(line, std::regex(R"(\s*@\d+\s+\S+\s+[<>]\s+r[A-Z].*)"));
 }
+
 // Returns the log of each node, begun `apart` ticks before that of the node before it.
 std::vector<std::string> apart_by(std::vector<std::string> logs, int apart) {
   for (std::size_t i = 0; i < logs.size(); ++i) {
