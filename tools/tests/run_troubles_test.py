@@ -50,6 +50,7 @@ islands:
         one = self.started("sink", "--island", "11", "--radio", "zep:0")
         air = "zep:" + one.waits_for(rb"zep:(\d+)\n")
         two = self.started("sink", "--island", "11", "--radio", air)
+        two.waits_for(rb"zep:(\d+)\n")  # On the air, so that it answers the mote, too.
         mote = self.started("mote", "--id", "5", "--radio", air)
         mote.event("joined", success=True)
         for sink in (one, two):
