@@ -181,6 +181,7 @@ struct Run {
   std::int64_t watched_until_us = -1;  ///< By a log that is whole: its end.
   /// A log marks nodes as under test: the trace plays everybody else.
   bool marked = false;
+  bool cut = false;  ///< A log ends within a line, which is left out.
   std::shared_ptr<RunStorage> storage;
   std::vector<Tap> taps;
   std::vector<std::string> facts;  ///< Results of the reading, a sentence each.

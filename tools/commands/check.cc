@@ -101,6 +101,10 @@ check::Run read_run(const CheckOptions& options, bool& undamaged) {
     facts.push_back((file == "-" ? "stdin" : file) + " is damaged or cut; the rest is judged");
   }
   check::Run run = reader.finish();
+  if (run.cut) {
+    undamaged = false;
+    facts.emplace_back("A log ends within a line; the rest is judged");
+  }
   run.facts.insert(run.facts.begin(), facts.begin(), facts.end());
   return run;
 }

@@ -31,7 +31,8 @@ constexpr std::int64_t kSilences = 10;  // Times the longest of the others.
 constexpr std::size_t kManyFrames = 40;
 constexpr std::int64_t kAloneTimes = 100;  // So much closer are the neighbours of a wrong stamp.
 constexpr std::size_t kTurnedMax = 8;
-constexpr std::uint8_t kDsnGapMax = 8;  // Beyond it a DSN is another sender's.
+constexpr std::size_t kBlockFrames = 3;  // At least, where a file has its taps in blocks.
+constexpr std::uint8_t kDsnGapMax = 8;   // Beyond it a DSN is another sender's.
 constexpr std::size_t kFactsMax = 8;
 
 std::string seconds(std::int64_t us) {
@@ -372,24 +373,31 @@ class Recorded {
   bool stepped_ = false;
 };
 
-// Returns whether most changes from one tap to another go forth in time, as a recorder of several
-// taps writes them.
-bool alternates(const Run& run, const std::vector<std::uint32_t>& frames) {
-  std::size_t changes = 0;
+// How often a file changes from one tap to another, and how often it goes back in time then.
+struct Changes {
+  std::size_t all = 0;
   std::size_t back = 0;
+};
+
+Changes changes_of(const Run& run, const std::vector<std::uint32_t>& frames) {
+  Changes out;
   for (std::size_t i = 1; i < frames.size(); ++i) {
     const Observation& before = run.seen[frames[i - 1]];
     const Observation& seen = run.seen[frames[i]];
     if (before.tap == seen.tap) continue;
-    ++changes;
-    back += seen.place.time_us < before.place.time_us - kAcrossUs ? 1 : 0;
+    ++out.all;
+    out.back += seen.place.time_us < before.place.time_us - kAcrossUs ? 1 : 0;
   }
-  return 4 * back <= changes;
+  return out;
 }
 
 void mend_file(Run& run, const std::vector<std::uint32_t>& frames) {
   if (frames.empty()) return;
-  if (alternates(run, frames)) return Recorded(run, frames).mend();
+  // A recorder of several taps writes them in order of time; or it writes a block of one, and then
+  // a block of another.
+  const Changes changes = changes_of(run, frames);
+  if (4 * changes.back <= changes.all) return Recorded(run, frames).mend();
+  const bool blocks = changes.all * kBlockFrames <= frames.size();
   std::vector<std::vector<std::uint32_t>> of_tap(run.taps.size());
   for (const std::uint32_t i : frames) of_tap[run.seen[i].tap].push_back(i);
   bool stepped = false;
@@ -399,7 +407,12 @@ void mend_file(Run& run, const std::vector<std::uint32_t>& frames) {
     recorded.mend();
     stepped = stepped || recorded.stepped();
   }
-  if (!stepped) return;
+  if (!stepped && blocks) return;
+  if (!stepped) {
+    run.facts.push_back(run.files[run.seen[frames.front()].place.file] +
+                        ": the clocks of its taps differ; what depends on the order between them "
+                        "is inconclusive");
+  }
   run.unordered_taps.resize(run.taps.size());  // Nothing ties the taps together any more.
   for (const std::uint32_t i : frames) {
     const std::uint32_t tap = run.seen[i].tap;

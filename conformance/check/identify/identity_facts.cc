@@ -37,9 +37,10 @@ void name_devices(const Run& run, Identity& out) {
       fact += " serial line " + run.taps[tap].name + ",";
     }
     if (device.application) fact += " application log,";
-    if (!device.holes.empty()) {
-      fact += " " + counted(device.holes.size(), "gap") + " in its DSNs,";
-    }
+    // Frames that a followed run has let go are none that were missed.
+    const auto gaps = std::ranges::count_if(
+        device.holes, [&](const auto& hole) { return hole.first >= out.gone_us; });
+    if (gaps > 0) fact += " " + counted(static_cast<std::uint64_t>(gaps), "gap") + " in its DSNs,";
     if (!device.judged) fact += " not under test,";
     fact.pop_back();
     out.facts.push_back(fact);

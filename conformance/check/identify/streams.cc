@@ -21,6 +21,8 @@ constexpr int kNearDsn = 3;
 constexpr int kDestIsland = 3;  // The sink of that island should send it on.
 constexpr int kSrcIsland = 1;
 constexpr int kMoteIsland = 4;
+constexpr int kStray = -4;  // One frame, and then many of another stream: perhaps an old one again.
+constexpr std::uint32_t kStrayAfter = 16;
 constexpr std::uint16_t kBothLines = 0xFFFF;
 
 // Notes that frames between the stream's last one and that time were missed; `dsn`: only that one.
@@ -46,7 +48,8 @@ Streams::Streams(const Run& run, const Options& options)
     : run_(run),
       given_(options),
       sink_am_(given_.sink_am().value_or(machine::Profile{}.sink_id)),
-      first_of_(65536, kLast) {}
+      first_of_(65536, kLast),
+      frames_of_(65536, 0) {}
 
 IslandHint Streams::hint_of(const machine::Frame& frame) const {
   IslandHint hint;
@@ -104,6 +107,7 @@ std::uint16_t Streams::assign(std::uint32_t index, bool& repeat) {
   const Observation& seen = run_.seen[index];
   const std::int64_t now = seen.place.time_us;
   const IslandHint hint = hint_of(seen.frame);
+  ++frames_of_[seen.frame.src];
   if (run_.past.holds(index)) return assign_past(index, hint);
   std::uint16_t best = kLast;
   int best_score = kNoMatch;
@@ -123,8 +127,11 @@ std::uint16_t Streams::assign(std::uint32_t index, bool& repeat) {
       stream.last_us = now;
       return i;
     }
-    const int points = score(stream, seen, hint);
-    if (points != kNoMatch) ++candidates;
+    int points = score(stream, seen, hint);
+    const bool stray =
+        stream.frames == 1 && frames_of_[seen.frame.src] - stream.last_of_am > kStrayAfter;
+    if (points != kNoMatch && !stray) ++candidates;
+    if (points != kNoMatch && stray) points += kStray;
     even = points == best_score && points != kNoMatch;
     if (points <= best_score) continue;
     best = i;
@@ -156,6 +163,7 @@ void Streams::go_on(Stream& stream, std::uint32_t index, const IslandHint& hint)
   stream.dsn = seen.dsn;
   stream.last = index;
   stream.last_us = seen.place.time_us;
+  stream.last_of_am = frames_of_[seen.frame.src];
   if (seen.frame.type == am::kJoin) stream.asked = true;
   if (!stream.sink && hint.mote != kNoIsland) stream.island = hint.mote;
   if (seen.frame.type == am::kJoinReply && !stream.asked) stream.sink = true;
@@ -215,6 +223,7 @@ std::uint16_t Streams::open(std::uint32_t index, const IslandHint& hint) {
   } else {
     stream.island = hint.mote;
   }
+  stream.last_of_am = frames_of_[stream.am];
   stream.first = stream.last = index;
   stream.first_us = stream.last_us = seen.place.time_us;
   stream.frames = 1;

@@ -38,6 +38,7 @@ struct Stream {
   std::int64_t first_us = 0;
   std::int64_t last_us = 0;
   std::uint64_t frames = 0;
+  std::uint32_t last_of_am = 0;  ///< Frames of its address before its last one.
   /// Frames that were missed between two times.
   struct Hole {
     std::int64_t from_us = 0;
@@ -92,7 +93,8 @@ class Streams {
   std::vector<Stream> streams_;
   std::uint64_t left_out_ = 0;
   std::vector<std::uint16_t> next_;       // Links streams of the same address.
-  std::vector<std::uint16_t> first_of_;   // By AM address.
+  std::vector<std::uint16_t> first_of_;   // By AM address,
+  std::vector<std::uint32_t> frames_of_;  // and the frames of it.
   std::vector<std::uint16_t> of_sender_;  // By number in Run::past.
 };
 

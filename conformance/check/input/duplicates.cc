@@ -11,10 +11,10 @@ namespace {
 
 using machine::Link;
 
-// A tap of a capture with its frames in order.
+// What a capture has of the air, or of one serial line, in order.
 struct Source {
-  std::uint32_t tap = 0;
   std::uint32_t file = 0;
+  std::uint32_t tap = 0;  // Of the air, which may have several in a file, the first.
   Link link = Link::kRadio;
   bool timed = true;
   std::int64_t first_us = 0;
@@ -23,18 +23,18 @@ struct Source {
 };
 
 bool same_frame(const Observation& a, const Observation& b) {
-  return (!a.has_dsn || !b.has_dsn || a.dsn == b.dsn) && a.frame.dest == b.frame.dest &&
-         a.frame.src == b.frame.src && a.frame.type == b.frame.type &&
-         equal(a.frame.payload, b.frame.payload);
+  return a.kind == b.kind && (!a.has_dsn || !b.has_dsn || a.dsn == b.dsn) &&
+         a.frame.dest == b.frame.dest && a.frame.src == b.frame.src &&
+         a.frame.type == b.frame.type && equal(a.frame.payload, b.frame.payload);
 }
 
 // How two sources overlap.
 struct Shared {
   std::size_t of_a = 0;  // Frames of each that could be in the other.
   std::size_t of_b = 0;
-  std::size_t both = 0;
-  bool upward = false;      // A sink's frame among them: only its own line has that.
-  std::uint32_t alone = 0;  // A frame of b that a has not.
+  std::vector<std::uint32_t> matched;  // Of b.
+  bool upward = false;                 // A sink's frame among them: only its own line has that.
+  std::uint32_t alone = 0;             // A frame of b that a has not.
 };
 
 class Duplicates {
@@ -60,30 +60,31 @@ class Duplicates {
   }
 
  private:
+  bool has(const Source& source, const Observation& seen) const {
+    if (!seen.node.empty() || seen.place.file != source.file) return false;
+    const bool radio = source.link == Link::kRadio && run_.taps[seen.tap].link == Link::kRadio;
+    return seen.tap == source.tap || radio;
+  }
+
   void collect() {
-    std::vector<std::size_t> of_tap(run_.taps.size(), SIZE_MAX);
     for (std::uint32_t i = 0; i < run_.seen.size(); ++i) {
       const Observation& seen = run_.seen[i];
+      const Link link = run_.taps[seen.tap].link;
+      const bool radio = link == Link::kRadio && seen.kind == Observation::Kind::kLinkAck;
       const bool frame =
           seen.kind == Observation::Kind::kRadio || seen.kind == Observation::Kind::kSerial;
-      if (!frame || !seen.node.empty()) continue;
-      if (of_tap[seen.tap] == SIZE_MAX) {
-        of_tap[seen.tap] = sources_.size();
-        sources_.push_back({seen.tap,
-                            seen.place.file,
-                            run_.taps[seen.tap].link,
-                            true,
-                            seen.place.time_us,
-                            seen.place.time_us,
-                            {}});
+      if (!(frame || radio) || !seen.node.empty()) continue;
+      auto source = std::ranges::find_if(sources_, [&](const Source& s) { return has(s, seen); });
+      if (source == sources_.end()) {
+        const std::int64_t time_us = seen.place.time_us;
+        source =
+            sources_.insert(source, {seen.place.file, seen.tap, link, true, time_us, time_us, {}});
       }
-      Source& source = sources_[of_tap[seen.tap]];
-      source.timed = source.timed && seen.place.timed();
-      source.last_us = seen.place.time_us;
-      source.frames.push_back(i);
+      source->timed = source->timed && seen.place.timed();
+      source->last_us = seen.place.time_us;
+      source->frames.push_back(i);
     }
-    std::sort(sources_.begin(), sources_.end(),
-              [](const Source& a, const Source& b) { return a.tap < b.tap; });
+    std::ranges::sort(sources_, {}, &Source::tap);
   }
 
   std::string file(std::uint32_t index) const { return run_.files[index]; }
@@ -125,6 +126,7 @@ class Duplicates {
     };
     for (const std::uint32_t i : a.frames) out.of_a += within(i) ? 1 : 0;
     std::vector<bool> used(timed ? a.frames.size() : 0);
+    out.matched.reserve(b.frames.size());
     std::size_t from = 0;
     bool alone = false;
     for (const std::uint32_t i : b.frames) {
@@ -149,7 +151,7 @@ class Duplicates {
         alone = true;
         continue;
       }
-      ++out.both;
+      out.matched.push_back(i);
       out.upward = out.upward || !seen.to_mote;
       if (timed) used[k] = true;
       if (!timed) from = k + 1;
@@ -164,11 +166,17 @@ class Duplicates {
     if (timed && std::max(a.first_us, b.first_us) > std::min(a.last_us, b.last_us)) return true;
     const Shared b_in_a = shared(a, b, lo, hi);
     if (b_in_a.of_a == 0 || b_in_a.of_b == 0) return true;
-    if (b_in_a.both == b_in_a.of_b && (a.timed || !b.timed)) return drop(b, a, b_in_a, lo, hi);
+    if (b_in_a.matched.size() == b_in_a.of_b && (a.timed || !b.timed))
+      return drop(b, a, b_in_a, lo, hi);
     const Shared a_in_b = shared(b, a, lo, hi);
-    if (a_in_b.both == a_in_b.of_b) return drop(a, b, a_in_b, lo, hi);
-    if (b_in_a.both == b_in_a.of_b) return drop(b, a, b_in_a, lo, hi);
+    if (a_in_b.matched.size() == a_in_b.of_b) return drop(a, b, a_in_b, lo, hi);
+    if (b_in_a.matched.size() == b_in_a.of_b) return drop(b, a, b_in_a, lo, hi);
     const bool radio = a.link == Link::kRadio;
+    // Two sniffers of one air each miss frames.
+    if (radio && timed && 2 * b_in_a.matched.size() >= std::min(b_in_a.of_a, b_in_a.of_b)) {
+      for (const std::uint32_t i : b_in_a.matched) dropped_[i] = true;
+      return judged_once(b, a, b_in_a.matched.size());
+    }
     if (radio ? !a.timed && !b.timed : !b_in_a.upward) return true;  // Other times, other lines.
     error = file(b.file) + ": frame " + std::to_string(run_.seen[b_in_a.alone].place.frame) +
             " is not in " + file(a.file) + ", which is of the same " +
@@ -184,13 +192,17 @@ class Duplicates {
             std::int64_t hi) {
     for (std::size_t i = 0; i < run_.seen.size(); ++i) {
       const Observation& seen = run_.seen[i];
-      if (seen.tap != which.tap || !seen.node.empty()) continue;
+      if (!has(which, seen)) continue;
       const std::int64_t at = seen.place.time_us;
       if (!which.timed || !other.timed || (at >= lo && at <= hi)) dropped_[i] = true;
     }
-    run_.facts.push_back(file(which.file) + ": " + std::to_string(what.both) +
-                         (what.both == 1 ? " frame is" : " frames are") + " in " +
-                         file(other.file) + " as well and judged once");
+    return judged_once(which, other, what.matched.size());
+  }
+
+  bool judged_once(const Source& which, const Source& other, std::size_t frames) {
+    run_.facts.push_back(file(which.file) + ": " + std::to_string(frames) +
+                         (frames == 1 ? " frame is" : " frames are") + " in " + file(other.file) +
+                         " as well and judged once");
     return true;
   }
 

@@ -490,7 +490,8 @@ bool Acks::delivered_before(std::uint16_t node, const Arrived& arrived) {
 bool Acks::lacks_delivery(std::uint16_t node, const Arrived& arrived) {
   const Device& device = context_.device(node);
   return arrived.delivers != ReqId::kNone && arrived.sure && arrived.delivered == 0 &&
-         device.application && device.hearing && context_.run.has_time &&
+         device.application && context_.run.has_time &&
+         context_.tells<machine::Received>(node, context_.due_us(node, arrived.whole_us)) &&
          !delivered_before(node, arrived);
 }
 
@@ -522,13 +523,16 @@ void Acks::missing_delivery(std::uint16_t node, Arrived& arrived, std::int64_t n
   const bool full = !acked && context_.crowded(node, arrived.place.time_us);
   const bool nothing = arrived.ackable && !acked;
   const bool cut = arrived.delivers == "N11-SHORT"_rule;
+  // What else came to the node, and may have filled its buffers, only such a log says.
+  const bool given = context_.device(node).hearing;
   context_.report(
       acked && !cut ? "T2-DELIVER"_rule : arrived.delivers,
-      held || full ? Severity::kInconclusive
-      : cut        ? Severity::kWeak
-                   : Severity::kFail,
+      held || full || !(given || acked) ? Severity::kInconclusive
+      : cut                             ? Severity::kWeak
+                                        : Severity::kFail,
       arrived.place, node,
-      {"The node was given " + name_of(arrived.net) + (acked ? ", acked it" : "") +
+      {std::string("The node ") + (given ? "was given " : "surely received ") +
+           name_of(arrived.net) + (acked ? ", acked it" : "") +
            ", and its application did not get it within " + ms_text(context_.response_us(node)) +
            (nothing ? ", nor its sender an ack." : ".") +
            (cut ? " It ended after its nbytes." : ""),
@@ -553,10 +557,12 @@ void Acks::close(std::uint16_t node, Arrived& arrived) {
   if (arrived.sure && owed_[node] > 0) --owed_[node];
   arrived.must_ack = false;
   if (context_.device(node).hearing && !arrived.sure) return;  // A log says what arrived.
-  context_.report("T2-ACK"_rule, Severity::kInconclusive, arrived.place, node,
-                  {"No ack of " + name_of(arrived.net) + "; nothing proves that it arrived.",
-                   "An ack, if it arrived.",
-                   {}});
+  context_.report(
+      "T2-ACK"_rule, Severity::kInconclusive, arrived.place, node,
+      {"No ack of " + name_of(arrived.net) + "; nothing proves that it arrived where application " +
+           number(arrived.net.app_id) + " runs.",
+       "An ack, if it arrived.",
+       {}});
 }
 
 void Acks::overdue(std::uint16_t node, std::int64_t now_us) {

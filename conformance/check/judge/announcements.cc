@@ -265,6 +265,22 @@ void Announcements::overdue_reports(SinkWatch& sink, std::int64_t end_us) {
     // Its list may be full of members from before the capture, unless it has taken a later one.
     const bool room = context_.options.start_cold || sink.reported_us > watch.admitted.time_us;
     if (!room && !end) continue;
+    // A late one passes (decision 125), but for a whole log, unless the mote asks again before.
+    const auto is_report = [am](const Observation& seen) {
+      Net net;
+      SerialJoined joined;
+      return seen.kind == Observation::Kind::kSerial && !seen.to_mote && !seen.received &&
+             parse_net(seen.frame.payload, net) && parse_serial_joined(net, joined) &&
+             joined.address.devid == am;
+    };
+    const auto is_next = [&](const Observation& seen) {
+      const bool asks = seen.kind == Observation::Kind::kRadio && seen.frame.type == am::kJoin &&
+                        seen.frame.src == am;
+      return asks || is_report(seen);
+    };
+    const Observation* const next =
+        whole ? nullptr : context_.next(now_us, Context::kHeldLongUs, is_next);
+    if (next != nullptr && is_report(*next)) continue;
     sink.set_due(watch, false);
     const auto owes = [](const SinkHypothesis& h) { return !h.unknown && h.owes_report; };
     if (!std::all_of(watch.set.begin(), watch.set.end(), owes)) continue;
@@ -301,16 +317,18 @@ bool Announcements::may_be_lost(const SinkWatch& sink, const PairWatch& watch) c
 void Announcements::unannounced(const SinkWatch& sink, std::uint16_t mote_am,
                                 const PairWatch& watch, std::int64_t end_us) {
   const Device& device = context_.device(sink.device);
-  if (!device.hearing || !device.application || !watch.admitted.timed() || watch.set.empty())
-    return;
+  if (!device.application || !watch.admitted.timed() || watch.set.empty()) return;
   // It is told by what comes from the radio, whatever the serial line is busy with.
-  if (end_us <= context_.due_us(sink.device, watch.admitted_us, machine::Link::kRadio)) return;
+  const std::int64_t due_us =
+      context_.due_us(sink.device, watch.admitted_us, machine::Link::kRadio);
+  if (end_us <= due_us || !context_.tells<machine::MoteJoined>(sink.device, due_us)) return;
   const auto owes = [](const SinkHypothesis& h) { return !h.unknown && h.owes_notice; };
   if (!std::all_of(watch.set.begin(), watch.set.end(), owes)) return;
   context_.report("J6-ADD"_rule,
                   may_be_lost(sink, watch) ? Severity::kInconclusive : Severity::kFail,
                   watch.admitted, sink.device,
-                  {"The sink was given the ack_join of mote " + number(mote_am) +
+                  {std::string("The sink ") + (device.hearing ? "was given" : "surely received") +
+                       " the ack_join of mote " + number(mote_am) +
                        " with the number that it had answered, and does not list the mote: no "
                        "moteJoined followed within " +
                        ms_text(context_.response_us(sink.device)) + ".",

@@ -91,18 +91,27 @@ Context::Context(const Run& r, const Options& o, const Identity& w, Findings& f)
 void Context::look_up() {
   down_taps.resize(run.taps.size());
   std::vector<std::int64_t> file_from_us(run.files.size(), INT64_MAX);
+  std::vector<std::int64_t> file_to_us(run.files.size(), INT64_MIN);
   for (const Observation& seen : run.seen) {
     if (seen.kind == Observation::Kind::kSerial && seen.to_mote) down_taps[seen.tap] = true;
     std::int64_t& from_us = file_from_us[seen.place.file];
     from_us = std::min(from_us, seen.place.time_us);
+    std::int64_t& to_us = file_to_us[seen.place.file];
+    to_us = std::max(to_us, seen.place.time_us);
   }
   tap_from_us.resize(run.taps.size());
   for (const Observation& seen : run.seen) tap_from_us[seen.tap] = file_from_us[seen.place.file];
+  for (const LoggedNode& node : run.nodes) {
+    logs_us_.emplace_back(node.whole ? INT64_MIN : file_from_us[node.file],
+                          node.whole ? INT64_MAX : file_to_us[node.file]);
+  }
+  told_.resize(run.nodes.size());
   begun_us_.assign(run.nodes.size(), INT64_MAX);
   last_us.assign(who.devices.size(), -1);
   for (std::size_t i = 0; i < run.seen.size(); ++i) {
     const std::uint16_t sender = who.marks[i].device;
     const Observation& seen = run.seen[i];
+    if (sender < told_.size() && seen.notice != nullptr) told_[sender].insert(seen.notice->index());
     // A mote that joins has sent no message before.
     const auto* joined = seen.notice ? std::get_if<machine::Joined>(seen.notice) : nullptr;
     if (sender < begun_us_.size() &&

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -107,6 +108,22 @@ struct Context {
   std::int64_t end_us(std::uint16_t node) const {
     return node < run.nodes.size() ? std::min(run.end_us, run.nodes[node].to_us) : run.end_us;
   }
+  /// Returns whether the node's log had begun by then.
+  bool log_begun(std::uint16_t node, std::int64_t time_us) const {
+    return node < logs_us_.size() && logs_us_[node].first <= time_us;
+  }
+  /// Returns whether an event at the application of the node that is due by then would be in its
+  /// log: that has what the node was given, or events of this kind, and goes on.
+  template <class Event>
+  bool tells(std::uint16_t node, std::int64_t due_us) const {
+    return tells_any(node, due_us) &&
+           (device(node).hearing || told_[node].contains(machine::Notice(Event{}).index()));
+  }
+  /// Returns the same of events of any kind.
+  bool tells_any(std::uint16_t node, std::int64_t due_us) const {
+    if (device(node).hearing) return true;
+    return node < told_.size() && !told_[node].empty() && due_us < logs_us_[node].second;
+  }
   /// Returns whether what happened up to `before_us` before then may have come before the node's
   /// log began.
   bool begun_before(std::uint16_t node, std::int64_t time_us, std::int64_t before_us) const {
@@ -114,14 +131,20 @@ struct Context {
            begun_us_[node] >= time_us &&
            time_us - std::max(run.start_us, run.nodes[node].from_us) <= before_us;
   }
-  /// Returns what was seen by the skew of the taps later and may be the cause; nullptr if nothing.
+  /// Returns what was seen then, or later by at most the skew of the taps, and may be the cause;
+  /// nullptr if nothing.
   template <class Cause>
   const Observation* soon(std::int64_t time_us, Cause is_cause) const {
+    return next(time_us, options.skew_us, is_cause);
+  }
+  /// Returns the first such thing that was seen then, or later by at most `within_us`.
+  template <class Wanted>
+  const Observation* next(std::int64_t time_us, std::int64_t within_us, Wanted is_wanted) const {
     const auto from = std::ranges::lower_bound(
         run.seen, time_us, {}, [](const Observation& seen) { return seen.place.time_us; });
     for (auto at = from; at != run.seen.end(); ++at) {
-      if (at->place.time_us > time_us + options.skew_us) return nullptr;
-      if (is_cause(*at)) return &*at;
+      if (at->place.time_us > time_us + within_us) return nullptr;
+      if (is_wanted(*at)) return &*at;
     }
     return nullptr;
   }
@@ -196,6 +219,8 @@ struct Context {
  private:
   std::vector<Terms> logged_;           // By device.
   std::vector<std::int64_t> begun_us_;  // Of these: when the log shows that it begins anew.
+  std::vector<std::pair<std::int64_t, std::int64_t>> logs_us_;  // The log's first and last line.
+  std::vector<std::set<std::size_t>> told_;  // Which kinds of events its application got.
   Terms unlogged_;
 
   int backlog_of(std::uint16_t node, std::size_t index) const;

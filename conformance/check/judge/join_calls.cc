@@ -10,22 +10,24 @@ using Phase = JoinMote::Phase;
 
 JoinCalls::JoinCalls(Context& context, MoteJoins& motes, std::size_t devices)
     : context_(context), motes_(motes), calls_(devices) {
-  // Only a log that has join calls, or is whole, can show that there was none.
+  // Only a log that has join calls, or is whole, surely shows that there was none.
   for (std::size_t i = 0; i < devices; ++i) {
-    calls_[i].logged = context.device(static_cast<std::uint16_t>(i)).whole;
+    calls_[i].logged = calls_[i].recorded = context.device(static_cast<std::uint16_t>(i)).whole;
   }
   for (std::size_t i = 0; i < context.run.seen.size(); ++i) {
     const Observation& seen = context.run.seen[i];
     const std::uint16_t node = context.who.marks[i].device;
     if (seen.kind != Observation::Kind::kCall || node == kNobody) continue;
+    calls_[node].recorded = true;
     if (std::holds_alternative<machine::JoinIsland>(*seen.call)) calls_[node].logged = true;
   }
 }
 
 void JoinCalls::begin_life(std::uint16_t mote) {
-  const bool logged = calls_[mote].logged;
-  calls_[mote] = Calls{};
-  calls_[mote].logged = logged;
+  Calls next;
+  next.logged = calls_[mote].logged;
+  next.recorded = calls_[mote].recorded;
+  calls_[mote] = next;
 }
 
 bool JoinCalls::request(std::uint16_t mote, const Observation& seen, const Request& request) {
@@ -36,20 +38,20 @@ bool JoinCalls::request(std::uint16_t mote, const Observation& seen, const Reque
   const Place before_at = std::exchange(calls.asked_at, seen.place);
   const bool fresh = std::exchange(calls.fresh, false);
   const std::vector<MoteHypothesis>& set = std::as_const(motes_).set(mote);
-  if (calls.logged && calls.open == 0 && set.size() == 1 && !set[0].unknown &&
-      set[0].join.phase == Phase::kOutside) {
-    // Its log may have the call, or its end, beside the request that a capture has.
-    const auto its_call = [&](const Observation& other) {
-      return other.kind == Observation::Kind::kCall &&
-             other.node == context_.run.nodes[mote].name &&
-             std::holds_alternative<machine::JoinIsland>(*other.call);
-    };
-    const std::int64_t now = seen.place.time_us;
-    const bool beside = seen.node.empty() && (now - calls.told_us <= context_.options.skew_us ||
-                                              context_.soon(now, its_call) != nullptr);
-    context_.report("J1-CALLED"_rule, beside ? Severity::kInconclusive : Severity::kFail,
-                    seen.place, mote,
-                    {"A join_request without a joinIsland call.", "Silence.", {}});
+  // Its log may have the call, or its end, beside the request that a capture has.
+  const std::int64_t now = seen.place.time_us;
+  const auto its_call = [&](const Observation& other) {
+    return other.kind == Observation::Kind::kCall && other.node == context_.run.nodes[mote].name &&
+           std::holds_alternative<machine::JoinIsland>(*other.call);
+  };
+  const bool beside_log = calls.logged && seen.node.empty();
+  const Observation* const later = beside_log ? context_.soon(now, its_call) : nullptr;
+  if (calls.recorded && context_.log_begun(mote, now) && calls.open == 0 && set.size() == 1 &&
+      !set[0].unknown && set[0].join.phase == Phase::kOutside) {
+    const bool open = !calls.logged || later != nullptr ||
+                      (beside_log && now - calls.told_us <= context_.options.skew_us);
+    context_.report("J1-CALLED"_rule, open ? Severity::kInconclusive : Severity::kFail, seen.place,
+                    mote, {"A join_request without a joinIsland call.", "Silence.", {}});
   }
   const bool soon = seen.place.timed() && before_at.timed() &&
                     seen.place.time_us - before_at.time_us <=
@@ -68,11 +70,9 @@ bool JoinCalls::request(std::uint16_t mote, const Observation& seen, const Reque
   // Only the last call is open; what an earlier one left in a buffer cannot have waited for the
   // line.
   const std::int64_t called_us = calls.called.time_us;
-  if (!calls.last || calls.open != 1 ||
-      context_.due_us(mote, called_us) != called_us + context_.response_us(mote)) {
-    return as_member;
-  }
-  const bool numbered = fresh && before && !seen.node.empty();
+  const bool asked = calls.last && calls.open == 1 &&
+                     context_.due_us(mote, called_us) == called_us + context_.response_us(mote);
+  const bool numbered = asked && fresh && before && !seen.node.empty();
   if (numbered && before->seq_num == request.seq_num) {
     context_.report("J1-SEQ"_rule, Severity::kWeak, seen.place, mote,
                     {"The first join_request of a joinIsland call has number " +
@@ -82,12 +82,16 @@ bool JoinCalls::request(std::uint16_t mote, const Observation& seen, const Reque
   } else if (numbered) {
     context_.findings.kept("J1-SEQ"_rule);
   }
-  if (calls.last->descriptor == request.descriptor ||
-      (calls.earlier && calls.earlier->descriptor == request.descriptor)) {
+  if (!asked && (calls.open > 0 || later == nullptr)) return as_member;
+  const auto fits = [&](const std::optional<machine::JoinIsland>& call) {
+    return call && call->descriptor == request.descriptor;
+  };
+  if ((asked && (fits(calls.last) || fits(calls.earlier))) ||
+      (later != nullptr && fits(std::get<machine::JoinIsland>(*later->call)))) {
     context_.findings.kept("J1-REQUEST"_rule);
   } else {
     context_.report("J1-REQUEST"_rule, Severity::kFail, seen.place, mote,
-                    {"A join_request has another descriptor than the joinIsland call before it.",
+                    {"A join_request has another descriptor than its joinIsland call.",
                      "The descriptor of the call.",
                      {}});
   }
@@ -222,10 +226,11 @@ void JoinCalls::told(std::uint16_t mote, const Observation& seen, const machine:
     set = before;
     return;
   }
-  // FAIL is right at once for a call while joined (J8-JOINED), and at once or later for one while
-  // another runs.
+  // FAIL is right at once for a call while joined (J8-JOINED), which asks nobody, and at once or
+  // later for one while another runs.
   const bool waited = std::exchange(calls.waits, false);
-  const bool refused = waited || (calls.last && calls.refusable &&
+  const bool asks = calls.asked && calls.asked_at.time_us >= calls.called.time_us;
+  const bool refused = waited || (calls.last && calls.refusable && !asks &&
                                   now - calls.called.time_us <= context_.response_us(mote));
   const auto fits = [&](const MoteHypothesis& h) {
     return h.unknown || h.join.phase == Phase::kOutside ||
@@ -310,15 +315,14 @@ bool JoinCalls::judge_late(std::uint16_t mote, const Observation& seen,
 void JoinCalls::judge_member(std::uint16_t mote, const MoteHypothesis& h, std::int64_t end_us) {
   const Calls& calls = calls_[mote];
   if (!calls.last || calls.open == 0 || !context_.run.has_time) return;
-  if (!context_.device(mote).hearing) return;  // A log of the application alone may end before.
   const bool again = calls.called.time_us > h.accepted_us;  // While it was a member.
   // Unconfirmed, the call may wait for the end of all its requests, and fail (decision 102).
   // In a whole log it has the time of a golden trace.
   const bool whole = context_.device(mote).whole;
   const std::int64_t joined_us = std::max(h.accepted_us, h.acked_us) + context_.response_us(mote);
   const std::int64_t over_us = whole ? joined_us : std::max(last_expiry_us(mote, h), h.acked_us);
-  const std::int64_t from = again ? calls.called.time_us : over_us;
-  if (end_us <= context_.due_us(mote, from)) return;
+  const std::int64_t due_us = context_.due_us(mote, again ? calls.called.time_us : over_us);
+  if (end_us <= due_us || !context_.tells_any(mote, due_us)) return;
   context_.report(
       again    ? "J8-JOINED"_rule
       : h.told ? "J5-ONCE"_rule

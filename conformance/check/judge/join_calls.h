@@ -30,7 +30,8 @@ class JoinCalls {
 
  private:
   struct Calls {
-    bool logged = false;    ///< The log has join calls at all.
+    bool logged = false;    ///< The log has join calls at all,
+    bool recorded = false;  ///< or at least other calls.
     std::int64_t open = 0;  ///< That have not ended.
     std::optional<machine::JoinIsland> last;
     std::optional<machine::JoinIsland> earlier;  ///< Open when the last one came.

@@ -12,12 +12,42 @@ using machine::Route;
 
 constexpr std::int64_t kAtOnceUs = 50'000;
 constexpr std::int64_t kCallUs = 50'000;  // What send accepted is in its buffer then.
-constexpr std::size_t kRadioOut = 4;      // Messages that a buffer holds at least (decision 122).
-constexpr std::size_t kSerialOut = 2;
 
 bool known_trans(std::uint8_t trans_id) {
   return trans_id == component::kConnless || trans_id == component::kSynChannel ||
          trans_id == component::kRubiconAck;
+}
+
+// Returns the number that by the log a call of send returns; nothing if that is not plain.
+std::optional<std::uint16_t> returned(const Run& run, const Observation& call) {
+  const auto from = run.seen.begin() + (&call - run.seen.data()) + 1;
+  const auto next = std::find_if(from, run.seen.end(), [&](const Observation& seen) {
+    if (seen.node != call.node) return false;
+    if (seen.call != nullptr) return std::holds_alternative<machine::Send>(*seen.call);
+    return seen.notice != nullptr && std::holds_alternative<machine::SendResult>(*seen.notice);
+  });
+  if (next == run.seen.end() || next->notice == nullptr) return std::nullopt;
+  return std::get<machine::SendResult>(*next->notice).seq_num;
+}
+
+// How a message fits a call of send.
+struct AskedFor {
+  bool elsewhere = false;  // Its destination is that devid in another island.
+  bool goes = false;       // Its destination and its reliable are those of the call,
+  bool says = false;       // and its TRANSID, APPID and data.
+};
+
+// `more`: bytes may follow the data.
+AskedFor asked_for(const machine::Send& call, const Net& net, bool more) {
+  const bool at_home = call.dest.pid == machine::kLocalPid;
+  const machine::Address dest{at_home ? net.src.pid : call.dest.pid, call.dest.devid};
+  const bool reliable = call.reliable == (net.reliable == 1);
+  const Bytes body = net.body();
+  const Bytes data = more ? body.first(std::min(call.data.size(), body.size())) : body;
+  return {
+      at_home && reliable && dest.pid != net.dest.pid && dest.devid == net.dest.devid,
+      reliable && dest == net.dest,
+      net.trans_id == component::kConnless && call.app_id == net.app_id && equal(call.data, data)};
 }
 
 }  // namespace
@@ -70,6 +100,7 @@ void Originals::called(std::uint16_t node, const Observation& seen, const machin
   Call& one = calls_[node].push(
       {&call, {}, {}, seen.place, may_stay, to_mote ? down : up, may_stay, seen.place.time_us});
   one.self = self;
+  one.returns = returned(context_.run, seen);
 }
 
 void Originals::used(std::uint16_t node, std::uint16_t number) {
@@ -150,98 +181,6 @@ void Originals::judge_missing(std::uint16_t node, Call& call, std::int64_t now_u
   call.free = true;
 }
 
-void Originals::told(std::uint16_t node, const Observation& seen,
-                     const machine::SendResult& result) {
-  auto& calls = calls_[node];
-  if (calls.size() == 0) return;
-  std::size_t which = 0;  // The oldest that still waits: results come in the order of the calls.
-  for (std::size_t i = 0; i < calls.size(); ++i) {
-    const Call& one = calls.newest(i);
-    const bool waits = seen.place.time_us - one.place.time_us <= context_.response_us(node);
-    if (!one.result && waits) which = i;
-  }
-  Call& call = calls.newest(which);
-  if (call.result && context_.device(node).whole) {
-    context_.report("N1-SEQ"_rule, Severity::kFail, seen.place, node,
-                    {"send returns " + number(result.seq_num) + " after " + number(*call.result) +
-                         " for one call, to " + text_of(call.send->dest) + ".",
-                     "One result for each call.",
-                     {}});
-    return;
-  }
-  if (context_.device(node).whole &&
-      seen.place.time_us > context_.due_us(node, call.place.time_us)) {
-    context_.report("N1-SEQ"_rule, Severity::kFail, seen.place, node,
-                    {"send returns " + number(result.seq_num) + " " +
-                         ms_text(seen.place.time_us - call.place.time_us) + " after its call, to " +
-                         text_of(call.send->dest) + ".",
-                     "The number of the message, or 0xFFFF, at once.",
-                     {}});
-  }
-  call.result = result.seq_num;
-  call.told_us = seen.place.time_us;
-  call.full = result.seq_num == machine::kNoSeq && full(node, call.line);
-  if (result.seq_num == machine::kNoSeq) judge_refused(node, seen, call);
-  if (call.send->data.size() > machine::kAppDataMax && result.seq_num != machine::kNoSeq) {
-    context_.report("N1-SIZE"_rule, Severity::kFail, seen.place, node,
-                    {"send returned " + number(result.seq_num) + " for a message of " +
-                         number(call.send->data.size()) + " bytes.",
-                     "0xFFFF.",
-                     {}});
-    call.free = true;  // All else about it has this cause.
-  }
-  if (call.self && !call.left && result.seq_num != machine::kNoSeq) {
-    context_.report("N4-SELF"_rule, Severity::kWeak, seen.place, node,
-                    {"send returned " + number(result.seq_num) + " for a message to " +
-                         text_of(call.send->dest) + ", the node itself.",
-                     "0xFFFF.",
-                     {}});
-  }
-  if (call.left) judge_result(node, seen, call);
-}
-
-// Returns how many messages of its application a node accepted for a line and has not sent yet.
-std::size_t Originals::waiting(std::uint16_t node, Link line) const {
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < calls_[node].size(); ++i) {
-    const Call& one = calls_[node].newest(i);
-    const bool accepted = one.result && *one.result != machine::kNoSeq;
-    if (accepted && !one.left && !one.free && one.line == line) ++count;
-  }
-  return count;
-}
-
-bool Originals::full(std::uint16_t node, Link line) const {
-  return waiting(node, line) >= (line == Link::kRadio ? kRadioOut : kSerialOut);
-}
-
-// Says that send refused a message although fewer of its application's messages waited than a
-// buffer holds. Forwarded ones may have filled it, and awaited acks the room for acks, which nobody
-// states.
-void Originals::judge_refused(std::uint16_t node, const Observation& seen, const Call& call) {
-  // These it must or may refuse (decision 114).
-  const machine::Send& send = *call.send;
-  const std::uint16_t devid = send.dest.devid;
-  const bool nobody = machine::is_reserved(devid) && devid != machine::kNullDevid;
-  const bool all = devid == machine::kBroadcastDevid;
-  const bool refusable = send.data.size() > machine::kAppDataMax || (all ? send.reliable : nobody);
-  if (!context_.device(node).whole || call.free || refusable) return;
-  if (call.full) return;
-  bool awaits = false;
-  for (std::size_t i = 0; i < sent_[node].size(); ++i) {
-    const Sent& sent = sent_[node].newest(i);
-    awaits = awaits || (sent.net.reliable == 1 && !sent.acked && sent.told == 0);
-  }
-  const bool several = awaits && call.send->reliable;
-  context_.report(several ? "T4-SEVERAL"_rule : "N1-ROOM"_rule, Severity::kInconclusive, seen.place,
-                  node,
-                  {"send refused the message to " + text_of(call.send->dest) + " with " +
-                       number(waiting(node, call.line)) + " messages of the application waiting.",
-                   several ? "It is accepted, unless there is no room for another awaited ack."
-                           : "It is accepted, unless other messages fill the outgoing buffer.",
-                   {}});
-}
-
 // Judges whether a message overtook one that send accepted before it, for the same line; that one
 // may never leave.
 void Originals::judge_order(std::uint16_t node, const Observation& seen, const Call& later) {
@@ -284,17 +223,6 @@ void Originals::judge_late(std::uint16_t node, const Observation& seen, const Ca
        {}});
 }
 
-// Judges the number of a message that left and the one that send returned for it.
-void Originals::judge_result(std::uint16_t node, const Observation& seen, const Call& call) {
-  if (*call.left == *call.result) return context_.findings.kept("N1-SEQ"_rule);
-  context_.report(
-      call.full ? "N1-FULL"_rule : "N1-SEQ"_rule, Severity::kFail, seen.place, node,
-      {"send returned " + number(*call.result) + " for the message to " + text_of(call.send->dest) +
-           " with number " + number(*call.left) + ".",
-       call.full ? "A message that send refused is never sent." : "The number of the message.",
-       {}});
-}
-
 bool Originals::accepted(std::uint16_t node, std::uint16_t number) const {
   const Ring<Call, kRoom>& calls = calls_[node];
   for (std::size_t i = 0; i < calls.size(); ++i) {
@@ -324,28 +252,24 @@ Originals::Asked Originals::judge_wrap(std::uint16_t node, const Observation& se
   auto& calls = calls_[node];
   bool asked = false;
   ReqId rule = "N2-ONCE"_rule;  // If no call asked for it.
+  Call* numbered = nullptr;     // The call that returns its number.
   Call* same = nullptr;         // The last that says so, of another number or of this.
   for (std::size_t i = 0; i < calls.size(); ++i) {
     Call& one = calls.newest(i);
     const machine::Send& call = *one.send;
-    const bool at_home = call.dest.pid == machine::kLocalPid;
-    const machine::Address dest{at_home ? net.src.pid : call.dest.pid, call.dest.devid};
-    const bool elsewhere = at_home && dest.pid != net.dest.pid && dest.devid == net.dest.devid;
-    if (elsewhere && call.reliable == (net.reliable == 1)) rule = "N3-LOCAL"_rule;
-    if (dest != net.dest || call.reliable != (net.reliable == 1)) continue;
+    const AskedFor fit = asked_for(call, net, more);
+    if (fit.elsewhere) rule = "N3-LOCAL"_rule;
+    if (one.returns == net.seq_num && !one.left) numbered = &one;
+    if (!fit.goes) continue;
     asked = true;
     // What is cut is said by N1-SIZE.
     const bool cut = call.data.size() > machine::kAppDataMax && same == nullptr &&
                      (!one.result || *one.result == net.seq_num);
-    const std::size_t size = more ? std::min(call.data.size(), net.body().size()) : SIZE_MAX;
     if (cut && net.body().size() <= call.data.size() && call.app_id == net.app_id) {
       same = &one;
       break;
     }
-    if (net.trans_id != component::kConnless || call.app_id != net.app_id ||
-        !equal(call.data, net.body().first(std::min(size, net.body().size())))) {
-      continue;
-    }
+    if (!fit.says) continue;
     const bool its = one.result == net.seq_num;
     const bool waits = same != nullptr && !same->result && !same->left;  // For its first message.
     if (its && one.left && waits) break;
@@ -379,20 +303,43 @@ Originals::Asked Originals::judge_wrap(std::uint16_t node, const Observation& se
     if (same->result && !forgot_[node]) judge_result(node, seen, *same);
     return again ? Asked::kUnknown : Asked::kYes;
   }
-  if ((calls.size() == 0 && !context_.device(node).whole) || forgot_[node]) return Asked::kUnknown;
+  // By a capture a message may come before its call, by less than two clocks may differ.
+  const auto its_call = [&](const Observation& other) {
+    return other.node == context_.run.nodes[node].name && other.call != nullptr &&
+           std::holds_alternative<machine::Send>(*other.call) &&
+           returned(context_.run, other) == net.seq_num;
+  };
+  const bool beside_log = seen.node.empty() && context_.device(node).application;
+  const Observation* const later =
+      numbered == nullptr && beside_log ? context_.soon(seen.place.time_us, its_call) : nullptr;
+  const machine::Send* const wanted = numbered != nullptr ? numbered->send
+                                      : later != nullptr  ? &std::get<machine::Send>(*later->call)
+                                                          : nullptr;
+  const AskedFor fit = wanted != nullptr ? asked_for(*wanted, net, more) : AskedFor{};
+  if (fit.goes && fit.says) return Asked::kUnknown;
+  const bool none = calls.size() == 0 && wanted == nullptr && !context_.device(node).whole;
+  if (none || forgot_[node]) return Asked::kUnknown;
   // A message from before the log may have waited. Nobody knows what a log leaves out unless it is
   // whole or has what the node was given (decision 13).
   const bool whole = context_.device(node).hearing && (context_.options.start_cold || begun_[node]);
-  if (!asked) {
-    context_.report(rule, whole ? Severity::kFail : Severity::kInconclusive, seen.place, node,
+  const Severity severity = whole || wanted != nullptr ? Severity::kFail : Severity::kInconclusive;
+  if (numbered != nullptr) {
+    numbered->left = net.seq_num;
+    numbered->left_us = seen.place.time_us;
+  }
+  if (wanted != nullptr ? !fit.goes : !asked) {
+    const std::string call = wanted == nullptr ? ""
+                                               : " The call that returns this number is to " +
+                                                     text_of(wanted->dest) + ", reliable " +
+                                                     number(wanted->reliable ? 1 : 0) + ".";
+    context_.report(rule, severity, seen.place, node,
                     {"No call of its application asked for " + name_of(net) + ", reliable " +
-                         number(net.reliable) + ".",
+                         number(net.reliable) + "." + call,
                      "What send was given, unchanged.",
                      {}});
     return Asked::kUnknown;
   }
-  context_.report("T1-WRAP"_rule, whole ? Severity::kFail : Severity::kInconclusive, seen.place,
-                  node,
+  context_.report("T1-WRAP"_rule, severity, seen.place, node,
                   {"TRANSID " + number(net.trans_id) + ", APPID " + number(net.app_id) + " and " +
                        number(net.body().size()) + " bytes of data in " + name_of(net) +
                        ": no call of its application says so.",

@@ -87,6 +87,7 @@ class Originals {
     std::int64_t left_us = -1;                   ///< When it left.
     bool failed = false;                         ///< Its timeout was told before it left.
     std::int64_t told_us = 0;                    ///< When it returned `result`.
+    std::optional<std::uint16_t> returns = {};   ///< `result`, known ahead where the log is plain.
   };
 
   /// Judges the end of a message that is forgotten now: was its application notified?

@@ -366,6 +366,17 @@ void SynapticWatch::told(std::uint16_t device, const Observation& seen,
   in->before = false;
   in->ticks.add(now);
   judge_grid(device, seen, in->ticks);
+  const std::int64_t able_us = able_since(device, now, {}, in->local);
+  const std::int64_t runs_us =
+      std::min(able_us, in->begun_us) < 0 ? -1 : std::max({able_us, in->begun_us, node.restart_us});
+  if (!left_out(device, in->ticks, runs_us)) return;
+  context_.report(
+      "S2-SIGNAL"_rule, Severity::kFail, seen.place, device,
+      {"synData_received of one channel only 4 times within " +
+           ms_text(now - in->ticks.at_us.front()) + ".",
+       "One at each tick, " + ms_text(machine::us_of(node.channels.period_ticks)) + " apart.",
+       {}});
+  in->ticks = {};
 }
 
 }  // namespace rubric::check

@@ -214,7 +214,10 @@ void SynapticWatch::sent(std::uint16_t device, const Observation& seen, const Ne
   if (twin && (channel == nullptr || net.dest.pid != channel->peer.pid)) return;
   settle(device, now);
   out->ticks.add(now);
-  if (net.src != net.dest) judge_grid(device, seen, out->ticks);
+  if (net.src != net.dest) {
+    judge_grid(device, seen, out->ticks);
+    judge_share(device, seen, *out);
+  }
   out->waits_us = now;
   // A write just before the data may have missed its tick; then they have the values before it.
   bool current = true;
@@ -429,6 +432,46 @@ void SynapticWatch::judge_grid(std::uint16_t device, const Observation& seen, co
                    {}});
 }
 
+// Returns whether a channel that was able to do something since `runs_us` left ticks out: each of
+// them may be late by the response time, but not more the later they are.
+bool SynapticWatch::left_out(std::uint16_t device, const Ticks& ticks, std::int64_t runs_us) const {
+  const Node& node = nodes_[device];
+  const std::int64_t since_us = ticks.at_us.front();
+  if (ticks.count < ticks.at_us.size() || runs_us < 0 || since_us <= runs_us) return false;
+  const auto periods = static_cast<std::int64_t>(ticks.at_us.size() - 1);
+  const std::int64_t most_us = periods * machine::us_of(node.channels.period_ticks) +
+                               context_.response_us(device) + context_.early_us(device);
+  return since_us > node.step_us && ticks.at_us.back() - since_us > most_us;
+}
+
+void SynapticWatch::judge_share(std::uint16_t device, const Observation& seen, Out& out) {
+  Node& node = nodes_[device];
+  const machine::Channel* const channel = check::find(node.channels, out.id);
+  if (channel == nullptr || channel->mode != machine::Mode::kReliable) return;
+  const std::int64_t now = seen.place.time_us;
+  const std::int64_t able_us = able_since(device, now, out.line);
+  const std::int64_t runs_us = std::min(able_us, out.begun_us) < 0 || is_twin(node, out.id)
+                                   ? -1
+                                   : std::max({able_us, out.begun_us, node.restart_us});
+  if (!left_out(device, out.ticks, runs_us)) return;
+  const std::int64_t since_us = out.ticks.at_us.front();
+  out.ticks = {};
+  context_.report(
+      "S2-SEND"_rule, unsent(device, since_us, now), seen.place, device,
+      {"Data of the channel to " + text_of(channel->peer) + " only 4 times within " +
+           ms_text(now - since_us) + ".",
+       "Data at each tick, " + ms_text(machine::us_of(node.channels.period_ticks)) + " apart.",
+       {}});
+}
+
+// Returns how grave it is that data of a tick were not sent between two times.
+Severity SynapticWatch::unsent(std::uint16_t device, std::int64_t since_us,
+                               std::int64_t now_us) const {
+  if (crowded(device, since_us, now_us)) return Severity::kInconclusive;
+  return context_.device(device).hearing ? Severity::kFail
+                                         : context_.without(device, since_us, now_us);
+}
+
 // Returns whether other frames may have filled the outgoing buffer; then a tick's data are refused.
 bool SynapticWatch::crowded(std::uint16_t device, std::int64_t from_us, std::int64_t to_us) const {
   const std::vector<Observation>& seen = context_.run.seen;
@@ -470,9 +513,7 @@ void SynapticWatch::settle_outputs(std::uint16_t device, std::int64_t now_us) {
                        : expected ? "S3-FIRST"_rule
                        : saves    ? "S3-CHANGED"_rule
                                   : "S2-SEND"_rule;
-    Severity severity =
-        context_.device(device).hearing ? Severity::kFail : context_.without(device, since, now_us);
-    if (crowded(device, since, now_us)) severity = Severity::kInconclusive;
+    Severity severity = unsent(device, since, now_us);
     if ((expected || shifted) && severity == Severity::kFail) severity = Severity::kWeak;
     Place at;
     at.time_us = since;
@@ -485,6 +526,7 @@ void SynapticWatch::settle_outputs(std::uint16_t device, std::int64_t now_us) {
          {}});
     out.waits_us = now_us;
     out.wrote_us = -1;
+    out.ticks = {};
     if (saves) out.sent_us = now_us;  // Said once.
     out.newest = false;
   }
@@ -521,6 +563,7 @@ void SynapticWatch::settle_at(std::uint16_t device, std::int64_t now_us) {
          "One at each tick, " + ms_text(machine::us_of(node.channels.period_ticks)) + " apart.",
          {}});
     in.waits_us = now_us;
+    in.ticks = {};
   }
 }
 

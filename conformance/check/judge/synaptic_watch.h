@@ -163,9 +163,12 @@ class SynapticWatch {
   void settle_unknowns(std::uint16_t device, std::int64_t now_us);
   void settle_outputs(std::uint16_t device, std::int64_t now_us);
   bool crowded(std::uint16_t device, std::int64_t from_us, std::int64_t to_us) const;
+  bool left_out(std::uint16_t device, const Ticks& ticks, std::int64_t runs_us) const;
+  Severity unsent(std::uint16_t device, std::int64_t since_us, std::int64_t now_us) const;
   void sent_of_nothing(std::uint16_t device, const Observation& seen, const Net& net);
   void judge_content(std::uint16_t node, const Observation& seen, const Net& net);
   void judge_grid(std::uint16_t device, const Observation& seen, const Ticks& ticks);
+  void judge_share(std::uint16_t device, const Observation& seen, Out& out);
   void note(Node& node, const machine::Synaptic& before, std::int64_t now_us);
   static void note_old(Out& out, const machine::Synaptic& before, std::size_t pos,
                        std::int64_t now_us);

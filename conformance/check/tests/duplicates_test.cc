@@ -73,6 +73,20 @@ TEST(Duplicates, ACaptureWithFewerFramesCountsOnlyThroughTheOther) {
             }));
 }
 
+TEST(Duplicates, TwoSniffersOfOneAirThatEachMissFramesAreOneCapture) {
+  const check::Run one = must_read({kReliable});
+  check::Run run = must_read({kReliable, kReliable});
+  std::size_t radio = 0;
+  std::erase_if(run.seen, [&](const Observation& seen) {
+    if (seen.kind != Observation::Kind::kRadio && seen.kind != Observation::Kind::kLinkAck) {
+      return seen.place.file == 1;
+    }
+    return radio++ % 8 == (seen.place.file == 0 ? 2 : 5);
+  });
+  EXPECT_EQ(error_of(run), "");
+  same_findings(one, run);
+}
+
 TEST(Duplicates, CapturesOfTheSameTimeThatDisagreeAreRefused) {
   check::Run run = must_read({kReliable, kFirmware + "a_join_data.pcapng"});
   const std::string error = error_of(run);

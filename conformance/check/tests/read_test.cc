@@ -233,5 +233,23 @@ TEST(Read, FlagsOfTheCapturingHostAreTurned) {
   EXPECT_EQ(sink_only.ways(), "u");
 }
 
+TEST(Read, ALogThatEndsWithinALineIsTakenUpToThat) {
+  constexpr const char* kLog = R"(%rtr 1  %profile paper
+%node m2 mote id=2
+case log
+   @0 m2 < app join(type=1 transducers=1 actuators=1)
+   @5 m2 > rA am=2->1 join_request(seq_num=5 mote_type=1 trans)";
+  for (const char* end : {"", "\n"}) {
+    RunReader reader;
+    std::string error;
+    const bool taken = reader.add_bytes("log", std::string(kLog) + end, error);
+    EXPECT_EQ(taken, *end == 0) << error;
+    if (!taken) continue;
+    const check::Run run = reader.finish();
+    EXPECT_TRUE(run.cut);
+    EXPECT_EQ(run.seen.size(), 1U);
+  }
+}
+
 }  // namespace
 }  // namespace rubric::check::read_test

@@ -68,6 +68,18 @@ inline std::string retimed(const std::string& log,
   return out;
 }
 
+// Calls `call` with each packet of the capture and the name of its interface.
+inline void each_packet(const std::string& capture,
+                        const std::function<void(const Packet&, const std::string&)>& call) {
+  const std::unique_ptr<Reader> packets = make_reader(InputFormat::kPcapng, {});
+  auto take = [&](const Packet& packet) {
+    call(packet, packets->interfaces()[packet.interface_id].name);
+  };
+  packets->feed(Bytes(reinterpret_cast<const std::uint8_t*>(capture.data()), capture.size()),
+                PacketSink(take));
+  packets->finish(PacketSink(take));
+}
+
 // Reads the capture as several files, and then the logs. `file_of` says of each packet, which it
 // may change, in which file it lies, from 0; or -1, and it is left out.
 inline Run read_apart(const std::string& capture, int files,
@@ -76,17 +88,11 @@ inline Run read_apart(const std::string& capture, int files,
   RunReader reader;
   std::vector<std::uint32_t> opened;
   for (int i = 0; i < files; ++i) opened.push_back(reader.open("capture" + std::to_string(i)));
-  const std::unique_ptr<Reader> packets = make_reader(InputFormat::kPcapng, {});
-  auto take = [&](const Packet& packet) {
+  each_packet(capture, [&](const Packet& packet, const std::string& interface) {
     Packet one = packet;
     const int file = file_of(one);
-    if (file < 0) return;
-    reader.take(opened[static_cast<std::size_t>(file)], one,
-                packets->interfaces()[one.interface_id].name);
-  };
-  packets->feed(Bytes(reinterpret_cast<const std::uint8_t*>(capture.data()), capture.size()),
-                PacketSink(take));
-  packets->finish(PacketSink(take));
+    if (file >= 0) reader.take(opened[static_cast<std::size_t>(file)], one, interface);
+  });
   std::string error;
   for (std::size_t i = 0; i < logs.size(); ++i) {
     EXPECT_TRUE(reader.add_bytes("log" + std::to_string(i), logs[i], error)) << error;

@@ -1,11 +1,20 @@
-// Judges receive_ack, the event that tells an application of an ack or of its timeout.
+// Judges what the application of a sender is told: send_result, and receive_ack of an ack or of its
+// timeout.
 #include "conformance/check/judge/peis_watch.h"
 #include "conformance/check/judge/sent.h"
 #include "conformance/machine/transport.h"
 
 namespace rubric::check {
 
+using machine::Link;
 using machine::Role;
+
+namespace {
+
+constexpr std::size_t kRadioOut = 4;  // Messages that a buffer holds at least (decision 122).
+constexpr std::size_t kSerialOut = 2;
+
+}  // namespace
 
 void Originals::ack_heard(std::uint16_t node, const Net& ack, std::uint16_t acked) {
   Ring<Sent, kRoom>& ring = sent_[node];
@@ -212,6 +221,109 @@ void Originals::close(std::uint16_t node, std::size_t newest, std::int64_t now_u
       sent.place, node,
       {"No receive_ack for " + name_of(sent.net) + " in " + ms_text(waited) + ".",
        "receive_ack(failure) at the timeout, or receive_ack(success) before.",
+       {}});
+}
+
+void Originals::told(std::uint16_t node, const Observation& seen,
+                     const machine::SendResult& result) {
+  auto& calls = calls_[node];
+  if (calls.size() == 0) return;
+  std::size_t which = 0;  // The oldest that still waits: results come in the order of the calls.
+  for (std::size_t i = 0; i < calls.size(); ++i) {
+    const Call& one = calls.newest(i);
+    const bool waits = seen.place.time_us - one.place.time_us <= context_.response_us(node);
+    if (!one.result && waits) which = i;
+  }
+  Call& call = calls.newest(which);
+  if (call.result && context_.device(node).whole) {
+    context_.report("N1-SEQ"_rule, Severity::kFail, seen.place, node,
+                    {"send returns " + number(result.seq_num) + " after " + number(*call.result) +
+                         " for one call, to " + text_of(call.send->dest) + ".",
+                     "One result for each call.",
+                     {}});
+    return;
+  }
+  if (context_.device(node).whole &&
+      seen.place.time_us > context_.due_us(node, call.place.time_us)) {
+    context_.report("N1-SEQ"_rule, Severity::kFail, seen.place, node,
+                    {"send returns " + number(result.seq_num) + " " +
+                         ms_text(seen.place.time_us - call.place.time_us) + " after its call, to " +
+                         text_of(call.send->dest) + ".",
+                     "The number of the message, or 0xFFFF, at once.",
+                     {}});
+  }
+  call.result = result.seq_num;
+  call.told_us = seen.place.time_us;
+  call.full = result.seq_num == machine::kNoSeq && full(node, call.line);
+  if (result.seq_num == machine::kNoSeq) judge_refused(node, seen, call);
+  if (call.send->data.size() > machine::kAppDataMax && result.seq_num != machine::kNoSeq) {
+    context_.report("N1-SIZE"_rule, Severity::kFail, seen.place, node,
+                    {"send returned " + number(result.seq_num) + " for a message of " +
+                         number(call.send->data.size()) + " bytes.",
+                     "0xFFFF.",
+                     {}});
+    call.free = true;  // All else about it has this cause.
+  }
+  if (call.self && !call.left && result.seq_num != machine::kNoSeq) {
+    context_.report("N4-SELF"_rule, Severity::kWeak, seen.place, node,
+                    {"send returned " + number(result.seq_num) + " for a message to " +
+                         text_of(call.send->dest) + ", the node itself.",
+                     "0xFFFF.",
+                     {}});
+  }
+  if (call.left) judge_result(node, seen, call);
+}
+
+// Returns how many messages of its application a node accepted for a line and has not sent yet.
+std::size_t Originals::waiting(std::uint16_t node, Link line) const {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < calls_[node].size(); ++i) {
+    const Call& one = calls_[node].newest(i);
+    const bool accepted = one.result && *one.result != machine::kNoSeq;
+    if (accepted && !one.left && !one.free && one.line == line) ++count;
+  }
+  return count;
+}
+
+bool Originals::full(std::uint16_t node, Link line) const {
+  return waiting(node, line) >= (line == Link::kRadio ? kRadioOut : kSerialOut);
+}
+
+// Says that send refused a message although fewer of its application's messages waited than a
+// buffer holds. Forwarded ones may have filled it, and awaited acks the room for acks, which nobody
+// states.
+void Originals::judge_refused(std::uint16_t node, const Observation& seen, const Call& call) {
+  // These it must or may refuse (decision 114).
+  const machine::Send& send = *call.send;
+  const std::uint16_t devid = send.dest.devid;
+  const bool nobody = machine::is_reserved(devid) && devid != machine::kNullDevid;
+  const bool all = devid == machine::kBroadcastDevid;
+  const bool refusable = send.data.size() > machine::kAppDataMax || (all ? send.reliable : nobody);
+  if (!context_.device(node).whole || call.free || refusable) return;
+  if (call.full) return;
+  bool awaits = false;
+  for (std::size_t i = 0; i < sent_[node].size(); ++i) {
+    const Sent& sent = sent_[node].newest(i);
+    awaits = awaits || (sent.net.reliable == 1 && !sent.acked && sent.told == 0);
+  }
+  const bool several = awaits && call.send->reliable;
+  context_.report(several ? "T4-SEVERAL"_rule : "N1-ROOM"_rule, Severity::kInconclusive, seen.place,
+                  node,
+                  {"send refused the message to " + text_of(call.send->dest) + " with " +
+                       number(waiting(node, call.line)) + " messages of the application waiting.",
+                   several ? "It is accepted, unless there is no room for another awaited ack."
+                           : "It is accepted, unless other messages fill the outgoing buffer.",
+                   {}});
+}
+
+// Judges the number of a message that left and the one that send returned for it.
+void Originals::judge_result(std::uint16_t node, const Observation& seen, const Call& call) {
+  if (*call.left == *call.result) return context_.findings.kept("N1-SEQ"_rule);
+  context_.report(
+      call.full ? "N1-FULL"_rule : "N1-SEQ"_rule, Severity::kFail, seen.place, node,
+      {"send returned " + number(*call.result) + " for the message to " + text_of(call.send->dest) +
+           " with number " + number(*call.left) + ".",
+       call.full ? "A message that send refused is never sent." : "The number of the message.",
        {}});
 }
 
