@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <map>
+#include <system_error>
 
+#include "codec/text/files.h"
 #include "conformance/check/align/align_logs.h"
 #include "conformance/check/align/steps.h"
 #include "conformance/check/input/directions.h"
@@ -369,12 +369,12 @@ bool RunReader::add_bytes(const std::string& name, std::string_view bytes, std::
 }
 
 bool RunReader::add_file(const std::string& path, std::string& error) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) {
-    error = path + ": cannot be opened";
+  std::string bytes;
+  if (const int wrong = text::read_file(path, bytes)) {
+    error = path + ": " + std::generic_category().message(wrong);
     return false;
   }
-  return add_bytes(path, std::string(std::istreambuf_iterator<char>(file), {}), error);
+  return add_bytes(path, bytes, error);
 }
 
 Run RunReader::finish() {

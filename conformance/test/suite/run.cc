@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cstdint>
+#include <cstdlib>
 #include <exception>
+#include <limits>
 #include <mutex>
 #include <new>
 #include <thread>
@@ -105,13 +108,47 @@ class PlanRun {
   std::size_t reported_ = 0;
 };
 
-std::vector<std::uint32_t> lines_of_profile(const trace::File& head, const trace::Case& one) {
-  const runner::CaseResult result = runner::run_case(head, one, [](const trace::NodeHeader&) {
+runner::CaseResult of_machine(const trace::File& head, const trace::Case& one) {
+  return runner::run_case(head, one, [](const trace::NodeHeader&) {
     return std::make_unique<runner::SubjectTarget>(std::make_unique<runner::Machine>());
   });
+}
+
+std::vector<std::uint32_t> lines_of_profile(const trace::File& head, const trace::Case& one) {
   std::vector<std::uint32_t> lines;
-  for (const runner::Failure& failure : result.failures) lines.push_back(failure.place.line);
+  for (const runner::Failure& failure : of_machine(head, one).failures) {
+    lines.push_back(failure.place.line);
+  }
   return lines;
+}
+
+// A line of a set-up names no rule; then what is missing broke the one by which the machine does
+// it.
+void blame_as_machine(const trace::File& head, const trace::Case& one,
+                      std::vector<runner::Failure>& failures) {
+  const auto nameless = [](const runner::Failure& failure) {
+    return failure.requirements.empty() && !failure.forbidden && !failure.crash;
+  };
+  if (!trace::protocol().has_machine || std::ranges::none_of(failures, nameless)) return;
+  const runner::CaseResult right = of_machine(head, one);
+  const std::vector<const trace::Line*> asked = one.lines();
+  for (runner::Failure& failure : failures) {
+    const auto line = std::ranges::find_if(
+        asked, [&](const trace::Line* its) { return its->place.line == failure.place.line; });
+    const bool kept = std::ranges::none_of(right.failures, [&](const runner::Failure& its) {
+      return its.place.line == failure.place.line;
+    });
+    if (!nameless(failure) || line == asked.end() || !kept) continue;
+    std::int64_t nearest = std::numeric_limits<std::int64_t>::max();
+    for (const trace::Line* did : right.log.lines()) {
+      if (did->op != trace::Op::kEmits || did->node != failure.node) continue;
+      if (did->message.name != (*line)->message.name || did->requirements.empty()) continue;
+      const std::int64_t apart = std::abs(did->time.from - std::int64_t{failure.from});
+      if (apart >= nearest) continue;
+      nearest = apart;
+      failure.requirements.assign(1, did->requirements.front());
+    }
+  }
 }
 
 }  // namespace
@@ -144,6 +181,7 @@ CaseRun run_one(const SuiteCase& one, targets::Attachment& attachment, const std
       const bool failed = out.result.verdict == CaseVerdict::kFail;
       const bool other = trace::protocol().has_machine && out.profile != "paper";
       if (failed && other) out.lines_of_profile = lines_of_profile(head, itself);
+      if (failed) blame_as_machine(head, itself, out.result.failures);
     } else {
       out.result.verdict = CaseVerdict::kSkip;
       out.result.reason = missing;

@@ -7,13 +7,12 @@
 #include <unistd.h>
 
 #include <filesystem>
-#include <fstream>
 #include <functional>
-#include <iterator>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "codec/text/files.h"
 #include "conformance/test/targets/process.h"
 #include "conformance/test/targets/process_testing.h"
 
@@ -133,8 +132,8 @@ TEST(Groups, IgnoredSignalsStayIgnored) {
 std::size_t count_with(const std::string& words) {
   std::size_t count = 0;
   for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
-    std::ifstream file(entry.path() / "cmdline");
-    const std::string text(std::istreambuf_iterator<char>(file), {});
+    std::string text;
+    text::read_file(entry.path() / "cmdline", text);
     count += text.find(words) != std::string::npos;
   }
   return count;

@@ -12,10 +12,10 @@
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
-#include <iterator>
 #include <memory>
 #include <string_view>
 
+#include "codec/text/files.h"
 #include "conformance/test/targets/groups.h"
 
 extern char** environ;
@@ -42,9 +42,11 @@ std::vector<pid_t> children() {
 
 enum class Whose : unsigned char { kOurs, kAnothers, kNobodys, kUnknown };
 
+// Returns nothing of a process that ends meanwhile.
 std::string file_of(pid_t pid, std::string_view name) {
-  std::ifstream file(fmt::format("/proc/{}/{}", pid, name));
-  return {std::istreambuf_iterator<char>(file), {}};
+  std::string text;
+  text::read_file(fmt::format("/proc/{}/{}", pid, name), text);
+  return text;
 }
 
 Whose whose(pid_t pid, const std::string& mark) {
