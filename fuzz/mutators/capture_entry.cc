@@ -1,5 +1,6 @@
-// Entry points for targets whose input is a capture of any format, recognized by its content, or a
-// log. Input of no known format becomes a capture file, which can hold anything.
+// Entry points for targets whose input is a stream or file of one format, RUBRIC_FUZZ_FORMAT, or,
+// without that, a capture of any format, recognized by its content, or a log. Input of no known
+// format becomes a capture file, which can hold anything.
 #include "codec/containers/reader.h"
 #include "fuzz/mutators/entry.h"
 #include "fuzz/mutators/lines_mutator.h"
@@ -8,6 +9,11 @@ namespace {
 
 using namespace rubric;
 
+#ifdef RUBRIC_FUZZ_FORMAT
+InputFormat format_of(Bytes) { return InputFormat::RUBRIC_FUZZ_FORMAT; }
+
+bool is_log(const std::uint8_t*, std::size_t) { return false; }
+#else
 InputFormat format_of(Bytes input) {
   const InputFormat format = detect(input);
   const bool readable = format != InputFormat::kUnknown && format != InputFormat::kJsonl;
@@ -15,6 +21,7 @@ InputFormat format_of(Bytes input) {
 }
 
 bool is_log(const std::uint8_t* data, std::size_t size) { return size > 0 && data[0] == '%'; }
+#endif
 
 }  // namespace
 

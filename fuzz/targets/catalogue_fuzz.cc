@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
-#include <vector>
 
 #include "fuzz/support/embedded_files.h"
 #include "fuzz/support/places.h"
@@ -16,8 +15,6 @@ namespace {
 using rubric::fuzz::require;
 using rubricc::Diagnostics;
 using rubricc::Model;
-
-constexpr const char* kRules = "spec/requirements.yaml";
 
 std::string text_of(const rubricc::GeneratedFiles& files) {
   std::string out;
@@ -38,23 +35,11 @@ void as_catalogue(const std::string& text) {
   }
 }
 
-const std::vector<rubricc::Requirement>& rules() {
-  static const std::vector<rubricc::Requirement> all = [] {
-    Model model;
-    Diagnostics diagnostics;
-    rubricc::load_requirements_text(kRules, rubric::fuzz::embedded_files().at(kRules), model,
-                                    diagnostics);
-    require(diagnostics.empty(), "the project's own rules are good");
-    return model.requirements;
-  }();
-  return all;
-}
-
 void with_rules(const std::string& text, const char* name,
                 void (*load)(const std::string&, const std::string&, Model&, Diagnostics&)) {
   Model model;
   Diagnostics diagnostics;
-  model.requirements = rules();
+  model.requirements = rubric::fuzz::rules();
   load(name, text, model, diagnostics);
   rubric::fuzz::places_are_within(diagnostics, name, text);
   if (!diagnostics.empty()) return;

@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
-#include <vector>
 
 #include "fuzz/support/embedded_files.h"
 #include "fuzz/support/places.h"
@@ -17,22 +16,10 @@ using rubric::fuzz::require;
 
 constexpr const char* kInput = "spec/wire/input.ksy";
 constexpr const char* kImport = "spec/wire/tinyos.ksy";
-constexpr const char* kRules = "spec/requirements.yaml";
-
-const std::vector<rubricc::Requirement>& rules() {
-  static const std::vector<rubricc::Requirement> all = [] {
-    rubricc::Model model;
-    rubricc::Diagnostics diagnostics;
-    rubricc::load_requirements_text(kRules, rubric::fuzz::embedded_files().at(kRules), model,
-                                    diagnostics);
-    return model.requirements;
-  }();
-  return all;
-}
 
 // Loads the input with the catalogue that it may quote, beside the spec that it may import.
 void load(const std::string& text, rubricc::Model& model, rubricc::Diagnostics& diagnostics) {
-  model.requirements = rules();
+  model.requirements = rubric::fuzz::rules();
   if (text.find("tinyos") != std::string::npos) {
     rubricc::load_spec_text(kImport, rubric::fuzz::embedded_files().at(kImport), model,
                             diagnostics);

@@ -9,34 +9,11 @@
 #include "codec/runtime/ieee802154_fcs.h"
 #include "fuzz/support/input.h"
 #include "fuzz/support/require.h"
-
-namespace {
-
-using rubric::Bytes;
-using rubric::CpuPath;
-using rubric::fuzz::require;
-
-std::uint16_t crc_by_definition(Bytes bytes, unsigned crc) {
-  for (const std::uint8_t byte : bytes) {
-    crc ^= unsigned{byte} << 8;
-    for (int bit = 0; bit < 8; ++bit) crc = (crc & 0x8000) != 0 ? crc << 1 ^ 0x1021 : crc << 1;
-    crc &= 0xFFFF;
-  }
-  return static_cast<std::uint16_t>(crc);
-}
-std::uint16_t fcs_by_definition(Bytes bytes) {
-  unsigned fcs = 0;
-  for (const std::uint8_t byte : bytes) {
-    fcs ^= byte;
-    for (int bit = 0; bit < 8; ++bit) fcs = (fcs & 1) != 0 ? fcs >> 1 ^ 0x8408 : fcs >> 1;
-  }
-  return static_cast<std::uint16_t>(fcs);
-}
-
-}  // namespace
+#include "fuzz/support/sums.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace rubric;
+  using fuzz::require;
   fuzz::Input input(data, size);
   const std::size_t alignment = input.below(64);
   const std::uint16_t start = input.u16();
@@ -49,8 +26,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const Bytes bytes = Bytes(exact.data(), exact.size()).from(alignment);
   const std::size_t split = bytes.empty() ? 0 : cut % (bytes.size() + 1);
 
-  const std::uint16_t crc = crc_by_definition(bytes, start);
-  const std::uint16_t sum = fcs_by_definition(bytes);
+  const std::uint16_t crc = fuzz::crc_by_definition(bytes, start);
+  const std::uint16_t sum = fuzz::fcs_by_definition(bytes);
   require(crc16(bytes, start) == crc, "the mote's CRC is the polynomial's");
   require(fcs(bytes) == sum, "the mote's FCS is the polynomial's");
   require(fcs(bytes.from(split), fcs(bytes.first(split))) == sum, "an FCS goes on");

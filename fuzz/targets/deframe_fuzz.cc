@@ -10,6 +10,7 @@
 #include "codec/runtime/hdlc.h"
 #include "fuzz/support/readers.h"
 #include "fuzz/support/require.h"
+#include "fuzz/support/sums.h"
 
 namespace {
 
@@ -23,16 +24,6 @@ constexpr std::size_t kKept = 4096;
 
 enum class End { kFlag, kAborted, kInput };
 
-std::uint16_t plain_crc(const std::string& bytes) {
-  unsigned crc = 0;
-  for (const char c : bytes) {
-    crc ^= static_cast<unsigned>(static_cast<std::uint8_t>(c)) << 8;
-    for (int bit = 0; bit < 8; ++bit) crc = (crc & 0x8000) != 0 ? crc << 1 ^ 0x1021 : crc << 1;
-    crc &= 0xFFFF;
-  }
-  return static_cast<std::uint16_t>(crc);
-}
-
 Error error_at(Fault fault, std::size_t at, ReqId rule) {
   return Error{fault, static_cast<std::uint32_t>(at), rule};
 }
@@ -45,7 +36,7 @@ Error judge(const std::string& content, const std::string& kept, End end) {
   if (content.size() > most) return error_at(Fault::kTooLong, most, "WIRE-HDLC-LONG"_rule);
   if (content.size() < 4) return error_at(Fault::kTooShort, content.size(), "WIRE-HDLC-SHORT"_rule);
   const std::size_t crc_at = content.size() - 2;
-  const std::uint16_t crc = plain_crc(content.substr(0, crc_at));
+  const std::uint16_t crc = fuzz::crc_by_definition(testing::view(content).first(crc_at));
   const bool matches = content[crc_at] == static_cast<char>(crc & 0xFF) &&
                        content[crc_at + 1] == static_cast<char>(crc >> 8);
   if (!matches) return error_at(Fault::kCrc, crc_at, "WIRE-SERIAL-CRC"_rule);

@@ -11,25 +11,13 @@
 #include "fuzz/support/input.h"
 #include "fuzz/support/readers.h"
 #include "fuzz/support/require.h"
+#include "fuzz/support/sums.h"
 
 namespace {
 
 using namespace rubric;
 using fuzz::Kept;
 using fuzz::require;
-
-// IEEE 802.15.4-2006, section 7.2.1.9: bits in the order of sending, the least significant first.
-int plain_fcs(const std::string& bytes) {
-  unsigned sum = 0;
-  for (const char c : bytes) {
-    for (unsigned bit = 0; bit < 8; ++bit) {
-      const unsigned in = static_cast<std::uint8_t>(c) >> bit & 1u;
-      const bool feedback = ((sum ^ in) & 1u) != 0;
-      sum = sum >> 1 ^ (feedback ? 0x8408u : 0u);
-    }
-  }
-  return static_cast<int>(sum);
-}
 
 void check_sum(const Kept& kept, std::size_t record_size) {
   const Packet& packet = kept.packet;
@@ -38,8 +26,9 @@ void check_sum(const Kept& kept, std::size_t record_size) {
           "a frame lies within its record");
   const Fault fault = packet.error.fault;
   if (packet.fcs == kAbsent || (fault != Fault::kNone && fault != Fault::kFcs)) return;
-  require((plain_fcs(kept.bytes) == packet.fcs) == (fault == Fault::kNone),
-          "a frame is sound where its FCS is that of its bytes");
+  require(
+      (fuzz::fcs_by_definition(testing::view(kept.bytes)) == packet.fcs) == (fault == Fault::kNone),
+      "a frame is sound where its FCS is that of its bytes");
 }
 
 unsigned little(const Kept& kept, std::size_t at) {

@@ -9,6 +9,8 @@
 #include <iterator>
 #include <system_error>
 
+#include "codec/reflect/suggest.h"
+
 namespace rubricc {
 namespace {
 
@@ -32,25 +34,6 @@ std::string blank_like(std::string_view line, std::size_t count) {
     out += c == '\t' ? '\t' : ' ';
   }
   return out;
-}
-
-/// Returns the edits (insert, delete, replace, swap of neighbours count one each) that turn `a`
-/// into `b`.
-std::size_t distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> before(b.size() + 1), last(b.size() + 1), next(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) last[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    next[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      next[j] = std::min({last[j] + 1, next[j - 1] + 1, last[j - 1] + (a[i - 1] != b[j - 1])});
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
-        next[j] = std::min(next[j], before[j - 2] + 1);
-      }
-    }
-    before.swap(last);
-    last.swap(next);
-  }
-  return last[b.size()];
 }
 
 }  // namespace
@@ -164,11 +147,11 @@ std::string bytes_text(std::uint64_t count) {
 
 std::string nearest(std::string_view word, std::span<const std::string_view> candidates) {
   std::string_view best;
-  std::size_t best_distance = std::min<std::size_t>(word.size(), 80) / 3 + 2;
+  std::size_t best_distance = word.size() / 3 + 2;
   if (word.size() > 80) return {};
   for (const std::string_view candidate : candidates) {
     if (candidate.size() > 80) continue;
-    const std::size_t d = distance(word, candidate);
+    const auto d = static_cast<std::size_t>(rubric::reflect::edit_distance(word, candidate));
     if (d < best_distance && d < candidate.size()) {
       best = candidate;
       best_distance = d;

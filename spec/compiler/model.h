@@ -11,6 +11,8 @@
 #include <string_view>
 #include <vector>
 
+#include "codec/reflect/schema.h"
+
 namespace rubricc {
 
 /// A place in a spec file; line and column count from 1, 0 is unknown.
@@ -69,10 +71,10 @@ struct Expr {
 };
 using ExprPtr = std::unique_ptr<Expr>;
 
-enum class ValueKind { kUint, kSint, kFloat, kBytes, kStruct, kMask };
-enum class RepeatKind { kOnce, kCount, kToEnd };
-enum class ExtentKind { kOwn, kSize, kToEnd, kTerminated };
-enum class Encoding { kNone, kAscii, kUtf8 };
+using ValueKind = rubric::reflect::Kind;  // Without kBits, which are kUint with a bit_width.
+using RepeatKind = rubric::reflect::Repeat;
+using ExtentKind = rubric::reflect::Extent;
+using Encoding = rubric::reflect::Encoding;
 
 struct Valid {
   SourcePlace place;

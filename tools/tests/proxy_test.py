@@ -5,14 +5,14 @@ Usage: proxy_test.py RUBRIC. All of it on this host's loopback.
 """
 
 import json
-import re
 import select
 import socket
 import subprocess
 import sys
 import unittest
 
-from live_testing import Flood, LiveTest, Running
+from live_testing import Flood, LiveTest
+from run_test import Node
 from serial_testing import PATIENCE_S
 from testing import ROOT
 
@@ -66,17 +66,8 @@ class Client(Lines):
                 raise AssertionError(found)
 
 
-class Mote(Running):
+class Mote(Node):
     """A mote whose application is this test."""
-
-    def call(self, call, **arguments):
-        self.process.stdin.write(json.dumps({"call": call, **arguments}).encode() + b"\n")
-        self.process.stdin.flush()
-
-    def event(self, name):
-        while (event := self.lines(1)[0])["event"] != name:
-            pass
-        return event
 
     def sampling(self):
         """The period and the sensors that the next read_updates asks for."""
@@ -96,17 +87,6 @@ class ProxyTest(LiveTest):
     program = Mote
     forgetting = ("--gone-after", "1")  # Of the sink.
 
-    def waits_for(self, run, pattern):
-        err = b""
-        while not (found := re.search(pattern, err)):
-            if not select.select([run.process.stderr], [], [], PATIENCE_S)[0]:
-                raise AssertionError(err)
-            more = run.process.stderr.read1(4096)
-            if not more:
-                raise AssertionError(err)
-            err += more
-        return found
-
     def setUp(self):
         super().setUp()
         self.home = subprocess.Popen([sys.executable, HOME], stdin=subprocess.PIPE,
@@ -117,24 +97,22 @@ class ProxyTest(LiveTest):
         self.addCleanup(self.home.stdin.close)
         self.asked = Piped(self.home.stdout)
         lines = self.asked.next()
-        self.sink = self.started("run", "sink", "--island", "11", "--radio", "zep:0", "--serial",
+        self.sink = self.started("sink", "--island", "11", "--radio", "zep:0", "--serial",
                                  "sf-server:0", *self.forgetting)
-        found = self.waits_for(self.sink, rb"(zep:\d+)\n[^$]*sf-server:(\d+)\n")
-        self.air = found.group(1).decode()
-        self.arguments = ("run", "proxy", "--island", "11", "--sink",
-                          f"sf@localhost:{found.group(2).decode()}", "--gone-after", "1",
-                          "--network", f"lines:127.0.0.1:{lines}")
+        self.air = self.sink.waits_for(rb"(zep:\d+)\n")
+        port = self.sink.waits_for(rb"sf-server:(\d+)\n")
+        self.arguments = ("proxy", "--island", "11", "--sink", f"sf@localhost:{port}",
+                          "--gone-after", "1", "--network", f"lines:127.0.0.1:{lines}")
         self.begin()
 
     def begin(self):
         self.proxy = self.started(*self.arguments)
         # A sink reports a new mote once, so its line must have a reader by then.
-        found = self.waits_for(self.proxy, rb"proxy at 127.0.0.1:(\d+)\n(?s:.*)sf@\S+: connected")
-        self.port = int(found.group(1))
+        self.port = int(self.proxy.waits_for(
+            rb"proxy at 127.0.0.1:(\d+)\n(?s:.*)sf@\S+: connected"))
 
     def mote(self):
-        mote = self.started("run", "mote", "--id", "5", "--radio", self.air, "--app", "-",
-                            stdin=subprocess.PIPE)
+        mote = self.started("mote", "--id", "5", "--radio", self.air, "--app", "-")
         mote.joins(3)
         return mote
 
@@ -198,7 +176,7 @@ class Proxy(ProxyTest):
         self.home.stdin.write(b"there 1/1/9 switch\nvalue 1/1/9 switch nan\ngone 1/1/7\n")
         self.home.stdin.flush()
         client.event("device", device="1/1/9")
-        self.waits_for(self.proxy, rb"refused 'value 1/1/9 switch nan'")
+        self.proxy.waits_for(rb"(refused 'value 1/1/9 switch nan')")
         client.event("left", device="1/1/7")
         # What makes no sense is an error for who said it, and for nobody else.
         other = Client(self, self.port)
@@ -218,7 +196,7 @@ class Proxy(ProxyTest):
         device = socket.create_server(("127.0.0.1", 0))
         self.addCleanup(device.close)
         proxy = self.started(*self.arguments[:-1], f"lines:127.0.0.1:{device.getsockname()[1]}")
-        port = int(self.waits_for(proxy, rb"proxy at 127.0.0.1:(\d+)\n").group(1))
+        port = int(proxy.waits_for(rb"proxy at 127.0.0.1:(\d+)\n"))
         device.settimeout(PATIENCE_S)
         line, _ = device.accept()
         self.addCleanup(line.close)

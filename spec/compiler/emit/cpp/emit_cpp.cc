@@ -36,11 +36,6 @@ std::string header_text(const Spec& spec, const std::string& about,
       fill(kFile, {{"spec", spec.id}, {"about", about}, {"includes", includes}, {"body", body}}));
 }
 
-std::string padded(std::string text, std::size_t width) {
-  text.resize(std::max(text.size() + 1, width), ' ');
-  return text;
-}
-
 std::string type_text(const FieldLayout& l, const Spec& spec) {
   const Field& f = *l.field;
   const bool array = f.repeat != RepeatKind::kOnce;
@@ -52,20 +47,8 @@ std::string type_text(const FieldLayout& l, const Spec& spec) {
 
 // Describes the structure, and where its fields are.
 std::string about(const Layout& layout, const Spec& spec) {
-  const Type& type = *layout.type;
-  std::string text = type.name + ".";
-  if (!type.doc.empty()) text += " " + type.doc;
-  if (!type.doc_ref.empty()) text += " (" + type.doc_ref + ")";
-  std::string out = comment(text, "//") + "//\n";
-  out += "//   " + padded("byte", 6) + padded("field", 20) + padded("type", 22) + "rule\n";
-  for (const FieldLayout& l : layout.fields) {
-    const Field& f = *l.field;
-    const std::string at = f.fixed_offset < 0 ? "-" : std::to_string(f.fixed_offset);
-    const std::string rule = f.requirement.empty() ? "-" : f.requirement;
-    out +=
-        "//   " + padded(at, 6) + padded(f.id, 20) + padded(type_text(l, spec), 22) + rule + "\n";
-  }
-  return out;
+  return comment(summary(*layout.type), "//") + "//\n" +
+         field_table(layout, 22, [&](const FieldLayout& l) { return type_text(l, spec); });
 }
 
 void add_headers(const Field& f, std::set<std::string>& out) {

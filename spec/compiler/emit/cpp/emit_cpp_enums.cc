@@ -1,4 +1,6 @@
 // Emits enums.h and the headers of masks.
+#include <fmt/core.h>
+
 #include <algorithm>
 
 #include "spec/compiler/emit/cpp/emit_cpp_parts.h"
@@ -63,12 +65,7 @@ int width_of(const Enum& e, const Spec& spec) {
 }
 
 std::string hex(std::uint32_t value, int width_bytes) {
-  static const char* const kDigits = "0123456789abcdef";
-  std::string out = "0x";
-  for (int shift = 8 * width_bytes - 4; shift >= 0; shift -= 4) {
-    out += kDigits[(value >> shift) & 15U];
-  }
-  return out;
+  return fmt::format("0x{:0{}x}", value, 2 * width_bytes);
 }
 
 }  // namespace

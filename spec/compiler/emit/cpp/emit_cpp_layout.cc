@@ -1,9 +1,12 @@
 // Computes the layout that generated C++ follows: front part, lengths, groups.
 #include "spec/compiler/emit/cpp/emit_cpp_layout.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <stdexcept>
 
+#include "spec/compiler/check/intervals.h"
 #include "spec/compiler/emit/cpp/emit_cpp_text.h"
 
 namespace rubricc::cpp {
@@ -141,10 +144,7 @@ std::vector<std::string> breaches(const Field& f, const std::string& x) {
   std::vector<std::string> out;
   for (const std::int64_t good : f.valid->one_of) out.push_back(x + " != " + literal(good));
   if (!out.empty()) return out;
-  const int value_bits = 8 * f.width_bytes;
-  const bool sint = f.kind == ValueKind::kSint;
-  const std::int64_t least = sint ? -(std::int64_t{1} << (value_bits - 1)) : 0;
-  const std::int64_t most = (std::int64_t{1} << (sint ? value_bits - 1 : value_bits)) - 1;
+  const auto [least, most] = width_range(f.width_bytes, f.kind == ValueKind::kSint);
   if (f.valid->min.value_or(least) > least) out.push_back(x + " < " + literal(*f.valid->min));
   if (f.valid->max.value_or(most) < most) out.push_back(x + " > " + literal(*f.valid->max));
   return out;
@@ -200,6 +200,23 @@ std::string range_text(const Layout& layout, std::size_t i) {
       f.max_size != 0 ? f.max_size : static_cast<std::uint32_t>(f.width_bytes);
   if (size <= 1) return "Byte " + from;
   return "Bytes " + from + "-" + std::to_string(f.fixed_offset + size - 1);
+}
+
+std::string summary(const Type& type) {
+  return type.name + "." + (type.doc.empty() ? "" : " " + type.doc) +
+         (type.doc_ref.empty() ? "" : " (" + type.doc_ref + ")");
+}
+
+std::string field_table(const Layout& layout, int columns, const SizeText& type_of) {
+  // Columns end in a blank, however long a word is.
+  constexpr std::string_view kRow = "//   {:<5} {:<19} {:<{}} {}\n";
+  std::string out = fmt::format(kRow, "byte", "field", "type", columns - 1, "rule");
+  for (const FieldLayout& l : layout.fields) {
+    const Field& f = *l.field;
+    out += fmt::format(kRow, f.fixed_offset < 0 ? "-" : std::to_string(f.fixed_offset), f.id,
+                       type_of(l), columns - 1, f.requirement.empty() ? "-" : f.requirement);
+  }
+  return out;
 }
 
 Layout lay_out(const Type& type) {

@@ -71,6 +71,11 @@ std::string total_of(const Layout& layout, const SizeText& size_of);
 /// Returns "bytes 8-11" for comments; "after updates" if the offset varies.
 std::string range_text(const Layout& layout, std::size_t i);
 
+/// Returns the structure's name and documentation in one line, for comments.
+std::string summary(const Type& type);
+/// Returns comment lines: each field's place, its type in so many columns, and its rule.
+std::string field_table(const Layout& layout, int columns, const SizeText& type_of);
+
 /// Returns whether checking the structure means only that its bytes are there.
 bool is_plain(const Type& type);
 /// Returns whether the structure takes all bytes that it is given.

@@ -41,17 +41,8 @@ Json choice_of(const Switch& choice) {
   return out;
 }
 
-const char* kind_of(const Field& field) {
-  switch (field.kind) {
-    case ValueKind::kUint: return "unsigned";
-    case ValueKind::kSint: return "signed";
-    case ValueKind::kFloat: return "float";
-    case ValueKind::kBytes: return "bytes";
-    case ValueKind::kStruct: return "struct";
-    case ValueKind::kMask: return "mask";
-  }
-  return "";
-}
+/// By ValueKind.
+constexpr const char* kKinds[] = {"unsigned", "signed", "float", "", "mask", "bytes", "struct"};
 
 void put_values(Json& out, const Field& field) {
   if (field.valid && !field.valid->one_of.empty()) {
@@ -75,7 +66,7 @@ Json field_of(const Field& field, const Type& type) {
   put(out, "doc", field.doc);
   put(out, "doc_ref", field.doc_ref);
   put(out, "requirement", field.requirement);
-  out["kind"] = kind_of(field);
+  out["kind"] = kKinds[static_cast<std::size_t>(field.kind)];
   if (field.width_bytes > 0) {
     out["width_bytes"] = field.width_bytes;
     out["little_endian"] = field.little_endian;

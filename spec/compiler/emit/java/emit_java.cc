@@ -1,4 +1,6 @@
 // Emits the Java messages: the files, and the head of each.
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 
@@ -101,11 +103,6 @@ GeneratedFile file(const Spec& spec, const std::string& class_id, const std::str
   return {folder + member(spec.id) + "/" + class_id + ".java", cpp::fold(text)};
 }
 
-std::string padded(std::string text, std::size_t width) {
-  text.resize(std::max(text.size() + 1, width), ' ');
-  return text;
-}
-
 std::string type_text(const FieldLayout& l, const Spec& spec) {
   const Field& f = *l.field;
   std::string out = "bytes";
@@ -120,20 +117,8 @@ std::string type_text(const FieldLayout& l, const Spec& spec) {
 
 // Describes the structure, and where its fields are.
 std::string about(const Layout& layout, const Spec& spec) {
-  const Type& type = *layout.type;
-  std::string text = type.name + ".";
-  if (!type.doc.empty()) text += " " + type.doc;
-  if (!type.doc_ref.empty()) text += " (" + type.doc_ref + ")";
-  std::string out = "//   " + padded("byte", 6) + padded("field", 20) + padded("type", 24);
-  out += "rule\n";
-  for (const FieldLayout& l : layout.fields) {
-    const Field& f = *l.field;
-    const std::string at = f.fixed_offset < 0 ? "-" : std::to_string(f.fixed_offset);
-    const std::string rule = f.requirement.empty() ? "-" : f.requirement;
-    out += "//   " + padded(at, 6) + padded(f.id, 20) + padded(type_text(l, spec), 24);
-    out += rule + "\n";
-  }
-  return out + javadoc(text, 0);
+  const auto type = [&](const FieldLayout& l) { return type_text(l, spec); };
+  return cpp::field_table(layout, 24, type) + javadoc(cpp::summary(*layout.type), 0);
 }
 
 std::string parse_doc(const Layout& layout) {
@@ -166,14 +151,8 @@ GeneratedFile constants(const Spec& spec, const std::string& id, const std::stri
   std::string list;
   for (const auto& [name, value] : values) {
     const bool wide = value > INT32_MAX;
-    std::string number = literal(value);
-    if (hex) {
-      static const char* const kDigits = "0123456789abcdef";
-      number = "0x";
-      for (int shift = value > 0xff ? 12 : 4; shift >= 0; shift -= 4) {
-        number += kDigits[(value >> shift) & 15];
-      }
-    }
+    const std::string number =
+        hex ? fmt::format("0x{:0{}x}", value, value > 0xff ? 4 : 2) : literal(value);
     list += std::string("public static final ") + (wide ? "long " : "int ") + constant(name) +
             " = " + number + ";\n";
   }

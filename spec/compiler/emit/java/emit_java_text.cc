@@ -138,15 +138,6 @@ std::string number_type(const Field& f) {
   return f.width_bytes == 4 && f.kind != ValueKind::kSint ? "long" : "int";
 }
 
-Interval width_range(const Field& f) {
-  const int width_bits = 8 * f.width_bytes;
-  if (f.kind == ValueKind::kSint) {
-    const std::int64_t half = std::int64_t{1} << (width_bits - 1);
-    return {-half, half - 1};
-  }
-  return {0, (std::int64_t{1} << width_bits) - 1};
-}
-
 std::string print(const Expr& expr, const Leaf& leaf) { return print_term(expr, leaf, false); }
 
 std::string print_size(const Expr& expr, const Leaf& leaf, std::uint32_t unit) {

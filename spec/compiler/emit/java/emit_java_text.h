@@ -41,8 +41,6 @@ std::string javadoc(std::string_view prose, std::size_t indent);
 std::string wire_name(const Field& field);
 /// Returns "int", "long" or "float".
 std::string number_type(const Field& field);
-/// Returns the least and greatest value of its width.
-Interval width_range(const Field& field);
 
 /// Prints `expr`; `leaf` prints its fields. Arithmetic is that of long.
 using Leaf = std::function<std::string(const Expr& field)>;

@@ -1,4 +1,5 @@
 // Emits the writing half of a class: values, and the steps that store them.
+#include "spec/compiler/check/intervals.h"
 #include "spec/compiler/emit/cpp_text.h"
 #include "spec/compiler/emit/java/emit_java_text.h"
 
@@ -74,7 +75,7 @@ Member member_of(const FieldLayout& l, const Spec& spec) {
     return {writer, "new " + writer + "()", "value"};
   }
   const std::string number = number_type(f);
-  const Interval range = width_range(f);
+  const Interval range = width_range(f.width_bytes, f.kind == ValueKind::kSint);
   const std::string within =
       "Wire.fit(value, " + literal(range.min) + ", " + literal(range.max) + ")";
   if (l.shape == Shape::kNumbers) {

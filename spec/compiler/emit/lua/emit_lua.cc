@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <stdexcept>
 
 #include "spec/compiler/emit/cpp_text.h"
 #include "spec/compiler/emit/emit.h"
@@ -100,17 +99,8 @@ class Entry {
   std::vector<std::string> pairs_;
 };
 
-const char* kind_text(ValueKind kind) {
-  switch (kind) {
-    case ValueKind::kUint: return "uint";
-    case ValueKind::kSint: return "sint";
-    case ValueKind::kFloat: return "float";
-    case ValueKind::kMask: return "mask";
-    case ValueKind::kBytes: return "bytes";
-    case ValueKind::kStruct: return "struct";
-  }
-  throw std::logic_error("emit_lua: a kind without a text");
-}
+/// By ValueKind.
+constexpr const char* kKinds[] = {"uint", "sint", "float", "", "mask", "bytes", "struct"};
 
 std::string number_list(const std::vector<std::int64_t>& values) {
   return fmt::format("{{{}}}", fmt::join(values, ", "));
@@ -130,7 +120,7 @@ void add_choice(const Field& field, Entry& entry) {
 std::string field_text(const Field& field) {
   Entry entry;
   entry.add_text("name", field.name);
-  entry.add_text("kind", kind_text(field.kind));
+  entry.add_text("kind", kKinds[static_cast<std::size_t>(field.kind)]);
   if (field.width_bytes != 0) entry.add("width", std::to_string(field.width_bytes));
   if (field.little_endian && field.width_bytes > 1) entry.add("little", "true");
   if (field.valid && field.valid->one_of.empty()) {

@@ -1,7 +1,6 @@
 #include "spec/compiler/emit/tables/built_tables.h"
 
 #include <algorithm>
-#include <stdexcept>
 
 #include "spec/compiler/emit/tables/routes.h"
 
@@ -18,28 +17,14 @@ reflect::Op load(const Field& field) {
   return field.little_endian ? reflect::Op::kLoadLe32 : reflect::Op::kLoadBe32;
 }
 
+/// Returns the step of an operator or a constant; operators have one order in both enums.
 reflect::Op op_of(ExprOp op) {
-  switch (op) {
-    case ExprOp::kInt:
-    case ExprOp::kEnumValue: return reflect::Op::kConst;
-    case ExprOp::kAdd: return reflect::Op::kAdd;
-    case ExprOp::kSub: return reflect::Op::kSub;
-    case ExprOp::kMul: return reflect::Op::kMul;
-    case ExprOp::kDiv: return reflect::Op::kDiv;
-    case ExprOp::kMod: return reflect::Op::kMod;
-    case ExprOp::kEq: return reflect::Op::kEq;
-    case ExprOp::kNe: return reflect::Op::kNe;
-    case ExprOp::kLt: return reflect::Op::kLt;
-    case ExprOp::kLe: return reflect::Op::kLe;
-    case ExprOp::kGt: return reflect::Op::kGt;
-    case ExprOp::kGe: return reflect::Op::kGe;
-    case ExprOp::kAnd: return reflect::Op::kAnd;
-    case ExprOp::kOr: return reflect::Op::kOr;
-    case ExprOp::kNot: return reflect::Op::kNot;
-    case ExprOp::kField: break;
-  }
-  throw std::logic_error("op_of: a field has no operator");
+  if (op < ExprOp::kAdd) return reflect::Op::kConst;
+  return static_cast<reflect::Op>(static_cast<int>(op) - static_cast<int>(ExprOp::kAdd) +
+                                  static_cast<int>(reflect::Op::kAdd));
 }
+static_assert(static_cast<int>(ExprOp::kNot) - static_cast<int>(ExprOp::kAdd) ==
+              static_cast<int>(reflect::Op::kNot) - static_cast<int>(reflect::Op::kAdd));
 
 /// Appends a number of bits: its bytes joined, without the bits above it and below it.
 void append_bits(const Expr& expr, std::vector<reflect::ExprStep>& out) {
@@ -65,37 +50,6 @@ void append(const Expr& expr, std::vector<reflect::ExprStep>& out) {
   const bool is_field = expr.op == ExprOp::kField;
   out.push_back({is_field ? load(*expr.field) : op_of(expr.op),
                  static_cast<std::int32_t>(is_field ? expr.offset_bytes : expr.value)});
-}
-
-reflect::Kind kind_of(ValueKind kind) {
-  switch (kind) {
-    case ValueKind::kUint: return reflect::Kind::kUint;
-    case ValueKind::kSint: return reflect::Kind::kSint;
-    case ValueKind::kFloat: return reflect::Kind::kFloat;
-    case ValueKind::kMask: return reflect::Kind::kMask;
-    case ValueKind::kBytes: return reflect::Kind::kBytes;
-    case ValueKind::kStruct: return reflect::Kind::kStruct;
-  }
-  throw std::logic_error("kind_of");
-}
-
-reflect::Repeat repeat_of(RepeatKind repeat) {
-  switch (repeat) {
-    case RepeatKind::kOnce: return reflect::Repeat::kOnce;
-    case RepeatKind::kCount: return reflect::Repeat::kCount;
-    case RepeatKind::kToEnd: return reflect::Repeat::kToEnd;
-  }
-  throw std::logic_error("repeat_of");
-}
-
-reflect::Extent extent_of(ExtentKind extent) {
-  switch (extent) {
-    case ExtentKind::kOwn: return reflect::Extent::kOwn;
-    case ExtentKind::kSize: return reflect::Extent::kSize;
-    case ExtentKind::kToEnd: return reflect::Extent::kToEnd;
-    case ExtentKind::kTerminated: return reflect::Extent::kTerminated;
-  }
-  throw std::logic_error("extent_of");
 }
 
 rubric::ReqId rule_of(const std::string& id) {
@@ -217,10 +171,7 @@ class BuiltTables::Builder {
   const reflect::Text* characters(const Field& field) {
     if (!field.text) return nullptr;
     const Text& from = *field.text;
-    reflect::Encoding encoding = reflect::Encoding::kNone;
-    if (from.encoding == Encoding::kAscii) encoding = reflect::Encoding::kAscii;
-    if (from.encoding == Encoding::kUtf8) encoding = reflect::Encoding::kUtf8;
-    return single<reflect::Text>({encoding, static_cast<std::int16_t>(from.terminator),
+    return single<reflect::Text>({from.encoding, static_cast<std::int16_t>(from.terminator),
                                   static_cast<std::int16_t>(from.padding), from.may_lack_its_end});
   }
 
@@ -230,11 +181,11 @@ class BuiltTables::Builder {
     return {text(one.name),
             text(key),
             static_cast<std::uint8_t>(key.size()),
-            one.bit_width > 0 ? reflect::Kind::kBits : kind_of(one.kind),
+            one.bit_width > 0 ? reflect::Kind::kBits : one.kind,
             static_cast<std::uint8_t>(one.width_bytes),
             one.little_endian,
-            repeat_of(one.repeat),
-            extent_of(one.extent),
+            one.repeat,
+            one.extent,
             static_cast<std::int32_t>(one.fixed_offset),
             valid(one),
             one.expect.value_or(-1),

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <cstdint>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -17,44 +16,20 @@
 namespace rubricc {
 namespace {
 
-/// Returns an operator's name in codec/reflect/schema.h.
-std::string_view op_name(rubric::reflect::Op op) {
-  constexpr std::string_view kNames[] = {
-      "kConst", "kLoadU8", "kLoadBe16", "kLoadLe16", "kLoadBe32", "kLoadLe32", "kAdd",
-      "kSub",   "kMul",    "kDiv",      "kMod",      "kEq",       "kNe",       "kLt",
-      "kLe",    "kGt",     "kGe",       "kAnd",      "kOr",       "kNot"};
-  return kNames[static_cast<std::size_t>(op)];
-}
+/// Names in codec/reflect/schema.h, in the order there.
+constexpr std::string_view kOpNames[] = {
+    "kConst", "kLoadU8", "kLoadBe16", "kLoadLe16", "kLoadBe32", "kLoadLe32", "kAdd",
+    "kSub",   "kMul",    "kDiv",      "kMod",      "kEq",       "kNe",       "kLt",
+    "kLe",    "kGt",     "kGe",       "kAnd",      "kOr",       "kNot"};
+constexpr std::string_view kKindNames[] = {"kUint", "kSint",  "kFloat", "kBits",
+                                           "kMask", "kBytes", "kStruct"};
+constexpr std::string_view kRepeatNames[] = {"kOnce", "kCount", "kToEnd"};
+constexpr std::string_view kExtentNames[] = {"kOwn", "kSize", "kToEnd", "kTerminated"};
 
-std::string kind_name(ValueKind kind) {
-  switch (kind) {
-    case ValueKind::kUint: return "Kind::kUint";
-    case ValueKind::kSint: return "Kind::kSint";
-    case ValueKind::kFloat: return "Kind::kFloat";
-    case ValueKind::kMask: return "Kind::kMask";
-    case ValueKind::kBytes: return "Kind::kBytes";
-    case ValueKind::kStruct: return "Kind::kStruct";
-  }
-  throw std::logic_error("kind_name");
-}
-
-std::string repeat_name(RepeatKind repeat) {
-  switch (repeat) {
-    case RepeatKind::kOnce: return "Repeat::kOnce";
-    case RepeatKind::kCount: return "Repeat::kCount";
-    case RepeatKind::kToEnd: return "Repeat::kToEnd";
-  }
-  throw std::logic_error("repeat_name");
-}
-
-std::string extent_name(ExtentKind extent) {
-  switch (extent) {
-    case ExtentKind::kOwn: return "Extent::kOwn";
-    case ExtentKind::kSize: return "Extent::kSize";
-    case ExtentKind::kToEnd: return "Extent::kToEnd";
-    case ExtentKind::kTerminated: break;  // Refused in code.
-  }
-  throw std::logic_error("extent_name");
+/// Returns "Kind::kUint".
+template <class Enum, std::size_t kCount>
+std::string name_in(const std::string_view (&names)[kCount], std::string_view type, Enum value) {
+  return fmt::format("{}::{}", type, names[static_cast<std::size_t>(value)]);
 }
 
 constexpr std::string_view kTablesFile = R"(<<banner>>
@@ -194,7 +169,7 @@ class TypeTables {
     const auto steps = postfix(*tree);
     std::vector<std::string> words;
     for (const auto& step : steps) {
-      words.push_back(fmt::format("{{Op::{}, {}}}", op_name(step.op), step.value));
+      words.push_back(fmt::format("{{{}, {}}}", name_in(kOpNames, "Op", step.op), step.value));
     }
     const std::string name = part(field, what);
     add_part(fmt::format("ExprStep {}[] = ", name), words);
@@ -263,11 +238,11 @@ class TypeTables {
     return {cpp_string(field.name),
             cpp_string(key),
             std::to_string(key.size()),
-            kind_name(field.kind),
+            name_in(kKindNames, "Kind", field.kind),
             std::to_string(field.width_bytes),
             field.little_endian ? "true" : "false",
-            repeat_name(field.repeat),
-            extent_name(field.extent),
+            name_in(kRepeatNames, "Repeat", field.repeat),
+            name_in(kExtentNames, "Extent", field.extent),
             std::to_string(field.fixed_offset),
             valid(field),
             field.expect ? cpp_int(*field.expect) : "-1",
