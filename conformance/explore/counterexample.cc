@@ -57,15 +57,8 @@ class Walk {
   void headers(trace::File& file) const {
     trace::LinkHeader air{std::string(kRadio), LinkKind::kRadio, {}};
     for (std::size_t i = 0; i < actors_.size(); ++i) {
-      const machine::Config config = nodes_.config_of(i);
-      trace::NodeHeader node;
-      node.name = actors_[i].names.node;
-      node.role = nodes_.is_mote(i) ? trace::Role::kMote : trace::Role::kSink;
-      node.id = config.id;
-      if (!nodes_.is_mote(i)) node.island = config.island;
-      node.iut = true;
-      file.node(node);
-      air.nodes.push_back(node.name);
+      air.nodes.push_back(actors_[i].names.node);
+      file.node(events::header_of(nodes_.config_of(i), air.nodes.back()));
     }
     file.header({air, {}, {}});
     for (const Actor& actor : actors_) {

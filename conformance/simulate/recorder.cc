@@ -16,15 +16,6 @@ namespace {
 using trace::LinkKind;
 using trace::Op;
 
-trace::Role role_of(machine::Role role) {
-  switch (role) {
-    case machine::Role::kMote: return trace::Role::kMote;
-    case machine::Role::kSink: return trace::Role::kSink;
-    case machine::Role::kBaseStation: break;
-  }
-  return trace::Role::kBaseStation;
-}
-
 std::string_view text_of(Mishap what) {
   switch (what) {
     case Mishap::kLost: return "lost";
@@ -35,25 +26,16 @@ std::string_view text_of(Mishap what) {
   return "off";
 }
 
-trace::Header header_of(const NodePlan& plan) {
-  trace::NodeHeader node;
-  node.name = plan.name;
-  node.role = role_of(plan.config.role);
-  if (plan.config.role != machine::Role::kBaseStation) node.id = plan.config.id;
-  if (plan.config.role != machine::Role::kMote) node.island = plan.config.island;
+trace::NodeHeader header_of(const NodePlan& plan) {
+  trace::NodeHeader node = events::header_of(plan.config, plan.name);
   if (plan.config.profile.channels_max != machine::Profile{}.channels_max) {
     node.stated.push_back({trace::ParameterId::kChannels, plan.config.profile.channels_max});
   }
-  node.iut = true;
-  trace::Header header;
-  header.what = node;
-  return header;
+  return node;
 }
 
 trace::Header header_of(std::string_view name, LinkKind kind, std::vector<std::string> nodes) {
-  trace::Header header;
-  header.what = trace::LinkHeader{std::string(name), kind, std::move(nodes)};
-  return header;
+  return {trace::LinkHeader{std::string(name), kind, std::move(nodes)}, {}, {}};
 }
 
 constexpr std::int64_t kNsPerUs = 1'000;
@@ -62,13 +44,11 @@ constexpr std::int64_t kNsPerUs = 1'000;
 
 TraceRecorder::TraceRecorder(const Network& network, std::string_view case_name)
     : names_(network.nodes.size()), file_(trace::File::begin(network.profile)) {
-  trace::Header seed;
-  seed.what = trace::SeedHeader{network.seed};
-  file_.header(std::move(seed));
+  file_.header({trace::SeedHeader{network.seed}, {}, {}});
   for (NodeId i = 0; i < names_.size(); ++i) {
     names_[i].node = network.nodes[i].name;
     names_[i].radio_group = static_cast<std::uint8_t>(kPanId);
-    file_.header(header_of(network.nodes[i]));
+    file_.node(header_of(network.nodes[i]));
   }
   const auto is_mote_or_sink = [&](NodeId i) {
     return network.nodes[i].config.role != machine::Role::kBaseStation;

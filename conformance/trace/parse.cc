@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "codec/text/text.h"
 #include "conformance/trace/check.h"
 #include "conformance/trace/parse_line.h"
 #include "conformance/trace/protocol.h"
@@ -160,27 +161,14 @@ void parse_headers(Scanner& in, std::vector<Item>& out) {
 
 /// Returns the offset of the first byte that is no UTF-8 or a control character other than a tab.
 std::size_t find_foreign(std::string_view text) {
-  const auto byte = [&](std::size_t i) {
-    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u;
-  };
-  const auto follows = [&](std::size_t i) { return (byte(i) & 0xC0) == 0x80; };
   for (std::size_t i = 0; i < text.size();) {
-    const unsigned c = byte(i);
-    if (c >= 0x20 && c < 0x7F) {
-      ++i;
-    } else if (c == '\t') {
-      ++i;
-    } else if (c >= 0xC2 && c <= 0xDF && follows(i + 1) && !(c == 0xC2 && byte(i + 1) < 0xA0)) {
-      i += 2;
-    } else if (c >= 0xE0 && c <= 0xEF && follows(i + 1) && follows(i + 2) &&
-               !(c == 0xE0 && byte(i + 1) < 0xA0) && !(c == 0xED && byte(i + 1) > 0x9F)) {
-      i += 3;
-    } else if (c >= 0xF0 && c <= 0xF4 && follows(i + 1) && follows(i + 2) && follows(i + 3) &&
-               !(c == 0xF0 && byte(i + 1) < 0x90) && !(c == 0xF4 && byte(i + 1) > 0x8F)) {
-      i += 4;
-    } else {
-      return i;
-    }
+    const char c = text[i];
+    const bool printed = (c >= ' ' && c < 0x7F) || c == '\t';
+    const std::size_t length = printed ? 1 : text::utf8_length(text.substr(i));
+    const bool control =
+        length == 2 && c == '\xC2' && static_cast<unsigned char>(text[i + 1]) < 0xA0;
+    if (length == 0 || control || (length == 1 && !printed)) return i;
+    i += length;
   }
   return std::string_view::npos;
 }

@@ -4,6 +4,7 @@
 Usage: tidy_test.py PROJECT_FOLDER. Prints each breach with its place; exit 1 if there is one.
 """
 
+import json
 import pathlib
 import re
 import subprocess
@@ -207,6 +208,17 @@ def folder_breaches(files):
         yield f"tools: {len(tools)} entries, at most {MAX_TOOLS}"
 
 
+def bug_breaches(root, files):
+    """A bug that a long test plants has its place in the source, also after that has changed."""
+    for path in (path for path in files if path.name == "bugs.json"):
+        for bug in json.loads((root / path).read_text("utf-8")):
+            trees = (root / path.parent, root / "conformance")  # Firmware is made of both.
+            source = next((tree / bug["file"] for tree in trees
+                           if (tree / bug["file"]).is_file()), None)
+            if source is None or source.read_text("utf-8").count(bug["old"]) != 1:
+                yield f"{path}: {bug['name']}: {bug['file']} does not have its old text once"
+
+
 def breaches(root, path, sentences):
     generated = "generated" in path.parts or "captures" in path.parts or "vectors" in path.parts
     code = path.suffix in CODE or path.name == "CMakeLists.txt"
@@ -275,6 +287,7 @@ def main():
     sentences = catalogue(root)
     found = [b for path in files for b in breaches(root, path, sentences)]
     found += folder_breaches(files)
+    found += bug_breaches(root, files)
     for breach in found:
         print(breach)
     print(f"{len(files)} files, {len(found)} mistakes")

@@ -1,12 +1,9 @@
-#include <gtest/gtest.h>
-
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "conformance/explore/counterexample.h"
-#include "conformance/explore/search.h"
-#include "conformance/generated/profiles.h"
+#include "conformance/explore/tests/testing.h"
 #include "conformance/machine/flaws/flaws.h"
 #include "conformance/trace/parse.h"
 #include "conformance/trace/print.h"
@@ -14,53 +11,17 @@
 namespace rubric::explore {
 namespace {
 
-// Loss and duplication; one call each, one copy of a frame in flight.
-Options network(std::uint8_t motes, std::uint8_t sinks) {
-  Options options;
-  options.profile = machine::kPaper;
-  options.motes = motes;
-  options.sinks = sinks;
-  options.loss = options.dup = true;
-  return options;
-}
-
-Result run(const Options& options) {
-  const auto nodes = std::make_unique<Nodes>(options);
-  return explore(*nodes);
-}
-
-std::string names(Mask mask) {
-  std::string text;
-  for (const PropertyInfo& p : properties()) {
-    if ((mask & bit(p.property)) != 0) text += std::string(text.empty() ? "" : " ") + p.name;
-  }
-  return text;
-}
-
-std::string goal_names(Mask mask) {
-  std::string text;
-  for (const GoalInfo& g : goals()) {
-    if ((mask & bit(g.goal)) != 0) text += std::string(text.empty() ? "" : " ") + g.name;
-  }
-  return text;
-}
-
-// Expects a complete search in which nothing breaks and every goal is reached.
-void expect_holds(const Options& options, const Result& result) {
-  EXPECT_TRUE(result.complete) << result.limit;
-  EXPECT_EQ(names(result.violation ? result.violation->violated : 0), "");
-  EXPECT_EQ(goal_names(expected_goals(options) & ~result.goals), "") << "never reached";
-}
+std::string names(Mask mask) { return names_in(mask, properties()); }
+std::string goal_names(Mask mask) { return names_in(mask, goals()); }
 
 // Without reductions, which reductions_test.cc is about.
-std::unique_ptr<Result> same_with_threads(std::uint8_t motes, std::uint8_t sinks) {
+std::unique_ptr<Result> same_with_threads(int motes, int sinks) {
   auto alone = std::make_unique<Result>();
   for (const unsigned threads : {1U, 2U, 3U}) {
     Options options = network(motes, sinks);
     options.symmetry = options.partial_order = false;
     options.threads = threads;
-    const Result result = run(options);
-    expect_holds(options, result);
+    const Result result = holds(options);
     if (threads == 1) *alone = result;
     EXPECT_EQ(result.progress.states, alone->progress.states);
     EXPECT_EQ(result.progress.transitions, alone->progress.transitions);
@@ -90,7 +51,7 @@ TEST(Explore, ForgettingThePastChangesNoVerdict) {
   for (const auto& [motes, sinks] : {std::pair{1, 1}, std::pair{1, 2}, std::pair{2, 1}}) {
     for (const flaws::Flaw& flaw : flaws::all()) {
       if (flaw.seen != flaws::Seen::kJoin) continue;
-      Options options = network(static_cast<std::uint8_t>(motes), static_cast<std::uint8_t>(sinks));
+      Options options = network(motes, sinks);
       options.calls = motes == 1 ? 2 : 1;
       options.step = flaw.step;
       const Result merged = run(options);
@@ -104,11 +65,10 @@ TEST(Explore, ForgettingThePastChangesNoVerdict) {
         EXPECT_EQ(goal_names(merged.goals), goal_names(exact.goals)) << flaw.name;
       }
     }
-    Options options = network(static_cast<std::uint8_t>(motes), static_cast<std::uint8_t>(sinks));
+    Options options = network(motes, sinks);
     const Result merged = run(options);
     options.exact = true;
-    const Result exact = run(options);
-    expect_holds(options, exact);
+    const Result exact = holds(options);
     EXPECT_EQ(goal_names(merged.goals), goal_names(exact.goals));
     EXPECT_GT(exact.progress.states, merged.progress.states);
   }
@@ -134,7 +94,7 @@ TEST(Explore, EveryKindOfFaultHolds) {
   all.push_back(network(1, 3));
   for (std::size_t i = 0; i < all.size(); ++i) {
     SCOPED_TRACE(i);
-    expect_holds(all[i], run(all[i]));
+    holds(all[i]);
   }
 }
 
@@ -142,8 +102,7 @@ TEST(Explore, RebootedMotesOfTheirSinkAreTheKnownWeakness) {
   Options options = network(1, 1);
   options.reboots = 1;
   options.calls = 2;
-  const Result paper = run(options);
-  expect_holds(options, paper);
+  const Result paper = holds(options);
   EXPECT_GT(paper.known_weak_states, 0U);
   EXPECT_TRUE(paper.known_weakness.has_value());
   // A sink that answers its members has no such weakness.
@@ -156,7 +115,7 @@ TEST(Explore, RebootedMotesOfTheirSinkAreTheKnownWeakness) {
 TEST(Explore, DeployedProfileHoldsByItsOwnRules) {
   Options options = network(1, 2);
   options.profile = machine::kDeployed;
-  expect_holds(options, run(options));
+  holds(options);
 }
 
 TEST(Explore, StopsAtItsLimit) {
@@ -172,13 +131,13 @@ TEST(ExploreMessages, Hold) {
   Options options = network(1, 1);
   options.scope = Scope::kFull;
   options.dups = 1;
-  expect_holds(options, run(options));
+  holds(options);
   options = network(2, 1);
   options.scope = Scope::kFull;
   options.dup = false;
   options.profile.join_requests_max = 1;
   options.profile.ack_join_max = 1;
-  expect_holds(options, run(options));
+  holds(options);
 }
 
 struct Found {
@@ -204,7 +163,7 @@ TEST_P(ExploreFlaws, AreFoundByTheShortestTrace) {
     options.scope = Scope::kFull;
     options.dup = false;
   }
-  expect_holds(options, run(options));  // Not the machine's own.
+  holds(options);  // Not the machine's own.
   options.step = flaw->step;
   const auto nodes = std::make_unique<Nodes>(options);
   const Result result = explore(*nodes);

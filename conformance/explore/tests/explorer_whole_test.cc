@@ -1,30 +1,12 @@
 // The largest networks that the project promises to search whole.
-#include <gtest/gtest.h>
-
-#include <memory>
-
-#include "conformance/explore/search.h"
-#include "conformance/generated/profiles.h"
+#include "conformance/explore/tests/testing.h"
 #include "tools/tests/readme/number.h"
 
 namespace rubric::explore {
 namespace {
 
-Result holds(const Options& options) {
-  const auto nodes = std::make_unique<Nodes>(options);
-  const Result result = explore(*nodes);
-  EXPECT_TRUE(result.complete) << result.limit;
-  EXPECT_FALSE(result.violation);
-  EXPECT_EQ(expected_goals(options) & ~result.goals, 0U);
-  return result;
-}
-
-Options network(std::uint8_t motes) {
-  Options options;
-  options.profile = machine::kPaper;
-  options.motes = motes;
-  options.sinks = 2;
-  options.loss = true;
+Options large_network(int motes) {
+  Options options = network(motes, 2);
   options.threads = 2;
   options.memory_max_bytes = std::uint64_t{4} << 30;
   return options;
@@ -32,8 +14,7 @@ Options network(std::uint8_t motes) {
 
 // Every order of all motes' steps; motes and sinks exchanged. What one mote can do, thrice.
 TEST(ExploreWhole, ThreeMotesAndTwoSinks) {
-  Options options = network(3);
-  options.dup = true;
+  Options options = large_network(3);
   options.partial_order = false;
   const Result result = holds(options);
   EXPECT_EQ(result.represented_states, readme_number("are # states, all visited"));
@@ -46,7 +27,8 @@ TEST(ExploreWhole, ThreeMotesAndTwoSinks) {
 }
 
 TEST(ExploreWhole, MessagesOfTwoMotesAndTwoSinks) {
-  Options options = network(2);
+  Options options = large_network(2);
+  options.dup = false;
   options.scope = Scope::kFull;
   options.profile.join_requests_max = options.profile.ack_join_max = 2;
   const Result result = holds(options);

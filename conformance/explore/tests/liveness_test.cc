@@ -1,13 +1,9 @@
 #include "conformance/explore/liveness.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
-#include <memory>
-#include <string>
 
 #include "conformance/explore/counterexample.h"
-#include "conformance/generated/profiles.h"
+#include "conformance/explore/tests/testing.h"
 #include "conformance/trace/parse.h"
 #include "conformance/trace/print.h"
 
@@ -19,19 +15,15 @@ using machine::Event;
 using machine::State;
 using machine::Ticks;
 
-Options network(int motes, int sinks) {
-  Options options;
-  options.profile = machine::kPaper;
-  options.motes = static_cast<std::uint8_t>(motes);
-  options.sinks = static_cast<std::uint8_t>(sinks);
-  options.loss = options.dup = true;
+Options lively(int motes, int sinks) {
+  Options options = network(motes, sinks);
   options.liveness = true;
   options.states_max = 200'000;
   return options;
 }
 
 Options messages(int motes, int sinks) {
-  Options options = network(motes, sinks);
+  Options options = lively(motes, sinks);
   options.scope = Scope::kFull;
   options.dup = false;
   options.profile.join_requests_max = options.profile.ack_join_max = 2;
@@ -97,11 +89,11 @@ void expect_loop(Nodes& nodes, const Path& path) {
 
 TEST(Liveness, WhatIsBegunEnds) {
   std::uint64_t parts = 0;
-  Options rebooted = network(1, 1);
+  Options rebooted = lively(1, 1);
   rebooted.reboots = 1;
   rebooted.calls = 2;
   for (const Options& options :
-       {network(1, 1), network(1, 2), network(2, 1), rebooted, messages(1, 1), messages(1, 2)}) {
+       {lively(1, 1), lively(1, 2), lively(2, 1), rebooted, messages(1, 1), messages(1, 2)}) {
     const auto nodes = std::make_unique<Nodes>(options);
     const Liveness found = look_for_loops(*nodes);
     EXPECT_STREQ(found.limit, "");
@@ -126,10 +118,10 @@ Liveness look(Options options, StepFunction step) {
 // Who asks for ever is answered in the end, if frames are lost fairly: but not by a sink that lists
 // the mote from before its reboot.
 TEST(Liveness, AskingForEverEndsUnlessTheSinkIsSilent) {
-  EXPECT_FALSE(look(network(1, 1), asks_for_ever).violation);
-  EXPECT_GT(look(network(1, 1), asks_for_ever).parts, 0U);
-  EXPECT_FALSE(look(network(1, 2), asks_for_ever).violation);
-  Options options = network(1, 1);
+  EXPECT_FALSE(look(lively(1, 1), asks_for_ever).violation);
+  EXPECT_GT(look(lively(1, 1), asks_for_ever).parts, 0U);
+  EXPECT_FALSE(look(lively(1, 2), asks_for_ever).violation);
+  Options options = lively(1, 1);
   options.reboots = 1;
   options.calls = 2;
   const Liveness found = look(options, asks_for_ever);
@@ -143,7 +135,7 @@ TEST(Liveness, AskingForEverEndsUnlessTheSinkIsSilent) {
 }
 
 TEST(Liveness, RestartingWithEachReplyIsFound) {
-  const Liveness found = look(network(1, 1), restarts_on_a_reply);
+  const Liveness found = look(lively(1, 1), restarts_on_a_reply);
   ASSERT_TRUE(found.violation);
   EXPECT_EQ(found.violation->violated, bit(Property::kOneTerminal));
 }
@@ -160,7 +152,7 @@ TEST(Liveness, WaitingForEverForAnAckIsFound) {
 }
 
 TEST(Liveness, ALimitIsNoVerdict) {
-  Options options = network(2, 1);
+  Options options = lively(2, 1);
   options.states_max = 100;
   const auto nodes = std::make_unique<Nodes>(options);
   EXPECT_STRNE(look_for_loops(*nodes).limit, "");

@@ -13,17 +13,25 @@ using machine::Joined;
 using machine::Received;
 using trace::ParameterId;
 
+// Holds back what follows from the frames that `waits` chooses.
+template <class Waits>
+StepMaker late(Ticks ticks, Waits waits) {
+  return [=]() -> Step {
+    return [=](Moment& moment) {
+      moment.honest();
+      if (moment.heard() == nullptr || !waits(*moment.heard())) return;
+      moment.rewrite([&](const Action& action) {
+        const bool visible =
+            action.what == Action::What::kTransmit || action.what == Action::What::kNotify;
+        return visible ? moment.hold(action, ticks) : moment.keep(action);
+      });
+    };
+  };
+}
+
 // Delays all answers to received frames by the same time, so that their order stays.
-template <Ticks kTicks>
-void slow(Moment& moment) {
-  moment.honest();
-  if (moment.heard() == nullptr) return;
-  moment.rewrite([&](const Action& action) {
-    const bool visible =
-        action.what == Action::What::kTransmit || action.what == Action::What::kNotify;
-    if (!visible) return moment.keep(action);
-    moment.hold(action, kTicks);
-  });
+StepMaker late(Ticks ticks) {
+  return late(ticks, [](const Frame&) { return true; });
 }
 
 void slow_acks(Moment& moment) {
@@ -67,10 +75,10 @@ void add_times(Variants& out) {
                  always(starts_slowly)});
   out.push_back({"mote_starts_slowly", "Motes ask for nothing in their first 250 ticks (125).",
                  always(mote_starts_slowly)});
-  out.push_back({"slow_100", "Everything that follows from a frame takes 100 ticks (125).",
-                 always(slow<100>), true});
-  out.push_back({"slow_250", "Everything that follows from a frame takes 250 ticks (125).",
-                 always(slow<250>), true});
+  out.push_back(
+      {"slow_100", "Everything that follows from a frame takes 100 ticks (125).", late(100), true});
+  out.push_back(
+      {"slow_250", "Everything that follows from a frame takes 250 ticks (125).", late(250), true});
   out.push_back(
       {"slow_acks", "Acks take 200 ticks, deliveries none (125).", always(slow_acks), true});
   out.push_back({"join_timer_2_percent_slow", "The join timer takes 510 ticks (128).",
@@ -269,26 +277,6 @@ void add_messages(Variants& out) {
 
 // The machine keeps what its configuration states.
 void as_stated(Moment& moment) { moment.honest(); }
-
-// Holds back what follows from the frames that `waits` chooses.
-template <class Waits>
-StepMaker late(Ticks ticks, Waits waits) {
-  return [=]() -> Step {
-    return [=](Moment& moment) {
-      moment.honest();
-      if (moment.heard() == nullptr || !waits(*moment.heard())) return;
-      moment.rewrite([&](const Action& action) {
-        const bool visible =
-            action.what == Action::What::kTransmit || action.what == Action::What::kNotify;
-        return visible ? moment.hold(action, ticks) : moment.keep(action);
-      });
-    };
-  };
-}
-
-StepMaker late(Ticks ticks) {
-  return late(ticks, [](const Frame&) { return true; });
-}
 
 struct LateValues {
   Ticks due = 0;

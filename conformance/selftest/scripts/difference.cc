@@ -109,30 +109,12 @@ class Lenient {
   }
 
   trace::File file(const Title& title) {
-    trace::File file = begin_file(script_);
-    trace::Case one(title.case_name);
-    for (const std::string& text : title.comments) {
-      one.items.emplace_back(trace::Comment{';', false, " " + text});
-    }
-    one.add(nothing_else(script_.length(), node_, title.rules));
-    Ticks now = 0;
-    for (std::size_t i = 0; i < played_.before.size(); ++i) {
-      show(played_.before[i], one);
-      now += script_.steps[i].delay;
-      one.add(given(script_.steps[i], now));
-      const bool frame = std::holds_alternative<machine::Heard>(script_.steps[i].event);
-      heard_at_ = frame ? std::optional<Ticks>(now) : std::nullopt;
-    }
-    show(played_.outputs.size(), one);
-    file.cases.push_back(std::move(one));
-    return file;
+    return to_file(
+        script_, played_, title, [&](const Output& output) { return expected(output); },
+        [&](const Step& step, Ticks now) { return given(step, now); });
   }
 
  private:
-  void show(std::size_t to, trace::Case& one) {
-    for (; shown_ < to; ++shown_) one.add(expected(played_.outputs[shown_]));
-  }
-
   Line expected(const Output& output) {
     Line line = line_of(output, node_);
     line.bytes.reset();
@@ -200,6 +182,8 @@ class Lenient {
 
   // Returns the line of a step; a frame that answers the node has the number that the node chose.
   Line given(const Step& step, Ticks now) {
+    const bool frame = std::holds_alternative<machine::Heard>(step.event);
+    heard_at_ = frame ? std::optional<Ticks>(now) : std::nullopt;
     Line line = line_of(step, now, node_);
     // Success and failure are both right for it (decision 108).
     const FieldValue* code = field(line, "payload.body.ack");
@@ -242,8 +226,7 @@ class Lenient {
   std::set<std::uint16_t> sent_;      // Numbers that send returned,
   std::set<std::uint16_t> not_well_;  // and that were acked with a code other than 0.
   std::set<std::int64_t> answered_;   // Numbers for which a given frame has their variable.
-  std::size_t shown_ = 0;
-  std::optional<Ticks> heard_at_;  // If the last step was a frame.
+  std::optional<Ticks> heard_at_;     // If the last step was a frame.
 };
 
 constexpr int kRunsAtOnceMax = 1000;

@@ -8,7 +8,6 @@
 
 #include "conformance/selftest/scripts/bytes.h"
 #include "conformance/selftest/scripts/rtr.h"
-#include "conformance/test/runner/case_files.h"
 #include "conformance/test/runner/subject_target.h"
 #include "conformance/trace/check.h"
 #include "conformance/trace/print.h"
@@ -16,34 +15,21 @@
 namespace rubric::script {
 namespace {
 
-std::vector<CaseScript> golden_scripts() {
-  std::vector<CaseScript> out;
-  for (const trace::Parsed& file : runner::load_cases("conformance/cases")) {
-    for (const trace::Case& one : file.file.cases) {
-      for (CaseScript& each : scripts_of(file.file, one)) {
-        each.node = one.name + "." + each.node;
-        out.push_back(std::move(each));
-      }
-    }
-  }
-  return out;
-}
-
 TEST(Difference, NoneInGoldenTraces) {
   std::size_t steps = 0;
   std::size_t compared = 0;
   for (const CaseScript& each : golden_scripts()) {
     const Difference difference = script::difference(each.script);
-    EXPECT_EQ(difference.text, "") << each.node << "\n" << trace::print(difference.file);
+    EXPECT_EQ(difference.text, "") << each.name() << "\n" << trace::print(difference.file);
     // Here they do exactly the same, so that nothing had to be left open.
     const Script decided = until_free(without_undecided(each.script));
     runner::SubjectTarget target(std::make_unique<runner::Machine>());
     const trace::File file = lenient_file(decided, play(decided, target), {"x", {}, {}});
     const auto wrong = trace::check(file);
-    EXPECT_TRUE(wrong.empty()) << each.node << ": " << wrong[0].text;
+    EXPECT_TRUE(wrong.empty()) << each.name() << ": " << wrong[0].text;
     const auto result = runner::run_case(file, file.cases[0],
                                          [](const trace::NodeHeader&) { return cpp_target(); });
-    EXPECT_EQ(result.verdict, runner::CaseVerdict::kPass) << runner::explain(result, each.node);
+    EXPECT_EQ(result.verdict, runner::CaseVerdict::kPass) << runner::explain(result, each.name());
     steps += each.script.steps.size();
     compared += difference.steps;
   }

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "conformance/selftest/scripts/bytes.h"
+#include "conformance/test/runner/case_files.h"
 #include "conformance/test/runner/subject_target.h"
 #include "conformance/trace/events/lines.h"
 
@@ -84,19 +85,16 @@ bool fits(const Script& script) {
   return std::all_of(script.steps.begin(), script.steps.end(), whole);
 }
 
-}  // namespace
-
-std::vector<CaseScript> scripts_of(const trace::File& file, const trace::Case& one) {
+void add_scripts(const trace::File& file, const trace::Case& one, std::vector<CaseScript>& out) {
   std::vector<std::unique_ptr<CaseScript>> made;
   const auto make = [&](const trace::NodeHeader& node) -> std::unique_ptr<runner::Target> {
-    made.push_back(std::make_unique<CaseScript>(CaseScript{node.name, {}, {}}));
+    made.push_back(std::make_unique<CaseScript>(CaseScript{one.name, node.name, {}, {}}));
     return std::make_unique<Keeper>(*made.back());
   };
   const runner::CaseResult result = runner::run_case(file, one, make);
   if (result.verdict == runner::CaseVerdict::kError) {
     throw std::runtime_error(one.name + ": " + result.reason);
   }
-  std::vector<CaseScript> out;
   for (const auto& each : made) {
     Script& script = each->script;
     Ticks given = 0;
@@ -106,23 +104,6 @@ std::vector<CaseScript> scripts_of(const trace::File& file, const trace::Case& o
     if (!fits(script)) throw std::runtime_error(one.name + ": too long for a script");
     out.push_back(std::move(*each));
   }
-  return out;
-}
-
-trace::NodeHeader node_of(const Script& script) {
-  const machine::Config& config = script.config;
-  trace::NodeHeader node;
-  node.role = static_cast<trace::Role>(config.role);
-  node.iut = true;
-  if (config.role != machine::Role::kBaseStation) {
-    node.id = config.id;
-    node.stated.push_back({trace::ParameterId::kChannels, config.profile.channels_max});
-  }
-  if (config.role != machine::Role::kMote) node.island = config.island;
-  node.name = config.role == machine::Role::kMote   ? "m" + std::to_string(config.id)
-              : config.role == machine::Role::kSink ? "sA"
-                                                    : "bA";
-  return node;
 }
 
 trace::File begin_file(const Script& script) {
@@ -130,6 +111,39 @@ trace::File begin_file(const Script& script) {
   trace::File file = trace::File::begin(is_deployed(config.profile) ? "deployed" : "paper");
   file.header({trace::SeedHeader{seed_of(config.first_seq)}, {}, {}});
   return file.node(node_of(script));
+}
+
+// Returns a `!>` line: nothing but what other lines take, from the start to `end`. It comes first,
+// so that it counts even if the case ends at a line that finds nothing.
+trace::Line nothing_else(Ticks end, const std::string& node, const std::vector<ReqId>& rules) {
+  trace::Line line;
+  line.time = trace::Time::at(0);
+  line.time.to = end;
+  line.node = node;
+  line.op = Op::kMustNot;
+  line.link = "*";
+  line.message = Message::any();
+  for (const ReqId rule : rules) line.requirements.emplace_back(trace::requirement_text(rule));
+  return line;
+}
+
+}  // namespace
+
+std::vector<CaseScript> golden_scripts(const std::filesystem::path& folder) {
+  std::vector<CaseScript> out;
+  for (const trace::Parsed& file : runner::load_cases(folder)) {
+    for (const trace::Case& one : file.file.cases) add_scripts(file.file, one, out);
+  }
+  return out;
+}
+
+trace::NodeHeader node_of(const Script& script) {
+  const machine::Config& config = script.config;
+  std::string name = config.role == machine::Role::kSink ? "sA" : "bA";
+  if (config.role == machine::Role::kMote) name = "m" + std::to_string(config.id);
+  trace::NodeHeader node = events::header_of(config, std::move(name));
+  if (node.id) node.stated.push_back({trace::ParameterId::kChannels, config.profile.channels_max});
+  return node;
 }
 
 trace::Line line_of(const Output& output, const std::string& node) {
@@ -153,35 +167,31 @@ trace::Line line_of(const Step& step, Ticks now, const std::string& node) {
   return events::given_line(now, names_of(node), step.event_with_bytes()).value();
 }
 
-trace::Line nothing_else(Ticks end, const std::string& node, const std::vector<ReqId>& rules) {
-  trace::Line line;
-  line.time = trace::Time::at(0);
-  line.time.to = end;
-  line.node = node;
-  line.op = Op::kMustNot;
-  line.link = "*";
-  line.message = Message::any();
-  for (const ReqId rule : rules) line.requirements.emplace_back(trace::requirement_text(rule));
-  return line;
+trace::File to_file(const Script& script, const Played& run, const Title& title) {
+  const std::string node = node_of(script).name;
+  return to_file(
+      script, run, title, [&](const Output& output) { return line_of(output, node); },
+      [&](const Step& step, Ticks now) { return line_of(step, now, node); });
 }
 
-trace::File to_file(const Script& script, const Played& run, const Title& title) {
+trace::File to_file(const Script& script, const Played& run, const Title& title,
+                    const std::function<trace::Line(const Output&)>& shown,
+                    const std::function<trace::Line(const Step&, Ticks now)>& given) {
   trace::File file = begin_file(script);
-  const std::string node = node_of(script).name;
   trace::Case one(title.case_name);
   for (const std::string& text : title.comments) {
     one.items.emplace_back(trace::Comment{';', false, " " + text});
   }
-  one.add(nothing_else(script.length(), node, title.rules));
-  std::size_t shown = 0;
+  one.add(nothing_else(script.length(), node_of(script).name, title.rules));
+  std::size_t at = 0;
   const auto show = [&](std::size_t to) {
-    for (; shown < to; ++shown) one.add(line_of(run.outputs[shown], node));
+    for (; at < to; ++at) one.add(shown(run.outputs[at]));
   };
   Ticks now = 0;
   for (std::size_t i = 0; i < run.before.size(); ++i) {
     show(run.before[i]);
     now += script.steps[i].delay;
-    one.add(line_of(script.steps[i], now, node));
+    one.add(given(script.steps[i], now));
   }
   show(run.outputs.size());
   file.cases.push_back(std::move(one));

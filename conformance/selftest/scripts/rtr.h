@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,16 +15,19 @@
 namespace rubric::script {
 
 struct CaseScript {
+  std::string case_name;
   std::string node;
   Script script;
   std::vector<runner::Output> outputs;  ///< By the reference machine in the case.
+
+  std::string name() const { return case_name + "." + node; }
 };
 
-/// Returns a script for each node under test: the runner's inputs to it when all of them are the
-/// reference machine; none for a node that is given more bytes at once, more often, or for longer,
-/// than a script can. Throws std::runtime_error if the case cannot be run, or exceeds a script's
-/// other bounds.
-std::vector<CaseScript> scripts_of(const trace::File& file, const trace::Case& one);
+/// Returns a script for each node under test of each case below the folder: the runner's inputs to
+/// it when all of them are the reference machine; none for a node that is given more bytes at once,
+/// more often, or for longer, than a script can. Throws std::runtime_error if a case cannot be run,
+/// or exceeds a script's other bounds.
+std::vector<CaseScript> golden_scripts(const std::filesystem::path& folder = "conformance/cases");
 
 /// Titles in the trace.
 struct Title {
@@ -36,17 +41,18 @@ struct Title {
 /// finds nothing wrong with it.
 trace::File to_file(const Script& script, const Played& run, const Title& title);
 
+/// Returns such a trace of other lines, which are made of the outputs and steps in their order.
+trace::File to_file(const Script& script, const Played& run, const Title& title,
+                    const std::function<trace::Line(const runner::Output&)>& shown,
+                    const std::function<trace::Line(const Step&, Ticks now)>& given);
+
 // Parts of that, for traces that require less.
 
 /// Return the node of a script's trace, and the line that shows an output or a step.
 trace::NodeHeader node_of(const Script& script);
-trace::File begin_file(const Script& script);
 trace::Line line_of(const runner::Output& output, const std::string& node);
 /// Returns the number of a message that was accepted, if the output says it.
 std::optional<std::uint16_t> number_sent(const runner::Output& output);
 trace::Line line_of(const Step& step, Ticks now, const std::string& node);
-/// Returns a `!>` line: nothing but what other lines take, from the start to `end`. It comes first,
-/// so that it counts even if the case ends at a line that finds nothing.
-trace::Line nothing_else(Ticks end, const std::string& node, const std::vector<ReqId>& rules);
 
 }  // namespace rubric::script

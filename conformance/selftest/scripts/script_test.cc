@@ -6,7 +6,6 @@
 
 #include "conformance/selftest/scripts/bytes.h"
 #include "conformance/selftest/scripts/rtr.h"
-#include "conformance/test/runner/case_files.h"
 #include "conformance/test/runner/subject_target.h"
 #include "conformance/trace/check.h"
 #include "conformance/trace/events/lines.h"
@@ -49,34 +48,26 @@ void expect_holds(const Script& script, const std::string& name) {
 
 TEST(Script, GoldenTracesAreScripts) {
   int scripts = 0;
-  for (const trace::Parsed& file : runner::load_cases("conformance/cases")) {
-    for (const trace::Case& one : file.file.cases) {
-      for (const CaseScript& each : scripts_of(file.file, one)) {
-        if (each.script.config.profile.gone_after_ticks != 0) continue;  // Not in the bytes.
-        const std::vector<std::uint8_t> bytes = encode(each.script);
-        const Script decoded = decode(view(bytes));
-        ASSERT_EQ(encode(decoded), bytes) << one.name;
-        // Alone and from its bytes the machine repeats its run of the case, for as long.
-        Played run = run_on_machine(decoded);
-        ASSERT_GE(run.outputs.size(), each.outputs.size()) << one.name;
-        run.outputs.resize(each.outputs.size());
-        ASSERT_EQ(lines_of(run.outputs), lines_of(each.outputs)) << one.name;
-        expect_holds(decoded, one.name);
-        ++scripts;
-      }
-    }
+  for (const CaseScript& each : golden_scripts()) {
+    if (each.script.config.profile.gone_after_ticks != 0) continue;  // Not in the bytes.
+    const std::vector<std::uint8_t> bytes = encode(each.script);
+    const Script decoded = decode(view(bytes));
+    ASSERT_EQ(encode(decoded), bytes) << each.case_name;
+    // Alone and from its bytes the machine repeats its run of the case, for as long.
+    Played run = run_on_machine(decoded);
+    ASSERT_GE(run.outputs.size(), each.outputs.size()) << each.case_name;
+    run.outputs.resize(each.outputs.size());
+    ASSERT_EQ(lines_of(run.outputs), lines_of(each.outputs)) << each.case_name;
+    expect_holds(decoded, each.case_name);
+    ++scripts;
   }
   EXPECT_GT(scripts, 270);
 }
 
 // The runner itself may let time pass after the last line, to check for forbidden outputs.
 TEST(Script, ARunHasNoMoreThanItsCase) {
-  for (const trace::Parsed& file : runner::load_cases("conformance/cases")) {
-    for (const trace::Case& one : file.file.cases) {
-      for (const CaseScript& each : scripts_of(file.file, one)) {
-        EXPECT_EQ(run_on_machine(each.script).outputs.size(), each.outputs.size()) << one.name;
-      }
-    }
+  for (const CaseScript& each : golden_scripts()) {
+    EXPECT_EQ(run_on_machine(each.script).outputs.size(), each.outputs.size()) << each.case_name;
   }
 }
 

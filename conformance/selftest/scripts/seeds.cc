@@ -7,7 +7,6 @@
 
 #include "conformance/selftest/scripts/bytes.h"
 #include "conformance/selftest/scripts/rtr.h"
-#include "conformance/test/runner/case_files.h"
 
 namespace {
 
@@ -15,21 +14,17 @@ int write_seeds(const std::filesystem::path& cases, const std::filesystem::path&
   using namespace rubric;
   std::filesystem::create_directories(folder);
   int written = 0;
-  for (const trace::Parsed& file : runner::load_cases(cases)) {
-    for (const trace::Case& one : file.file.cases) {
-      for (const script::CaseScript& each : script::scripts_of(file.file, one)) {
-        const std::vector<std::uint8_t> bytes = script::encode(each.script);
-        const std::filesystem::path path = folder / (one.name + "." + each.node + ".script");
-        std::ofstream out(path, std::ios::binary);
-        out.write(reinterpret_cast<const char*>(bytes.data()),
-                  static_cast<std::streamsize>(bytes.size()));
-        if (!out.flush()) {
-          std::fprintf(stderr, "%s: cannot be written\n", path.c_str());
-          return 1;
-        }
-        ++written;
-      }
+  for (const script::CaseScript& each : script::golden_scripts(cases)) {
+    const std::vector<std::uint8_t> bytes = script::encode(each.script);
+    const std::filesystem::path path = folder / (each.name() + ".script");
+    std::ofstream out(path, std::ios::binary);
+    out.write(reinterpret_cast<const char*>(bytes.data()),
+              static_cast<std::streamsize>(bytes.size()));
+    if (!out.flush()) {
+      std::fprintf(stderr, "%s: cannot be written\n", path.c_str());
+      return 1;
     }
+    ++written;
   }
   std::printf("%d scripts\n", written);
   return written == 0 ? 1 : 0;

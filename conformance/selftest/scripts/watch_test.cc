@@ -7,7 +7,6 @@
 
 #include "conformance/selftest/scripts/bytes.h"
 #include "conformance/selftest/scripts/rtr.h"
-#include "conformance/test/runner/case_files.h"
 #include "conformance/test/runner/subject_target.h"
 #include "conformance/trace/print.h"
 
@@ -23,33 +22,19 @@ std::string text_of(const std::optional<Broken>& broken) {
   return broken ? broken->text() : "nothing broken";
 }
 
-std::vector<Script> scripts_without_cases() {
-  std::vector<Script> out;
-  for (const trace::Parsed& file : runner::load_cases("conformance/cases")) {
-    for (const trace::Case& one : file.file.cases) {
-      for (const CaseScript& each : scripts_of(file.file, one)) out.push_back(each.script);
-    }
-  }
-  return out;
-}
-
 TEST(Watched, TheMachineKeepsItsPromisesInGoldenTraces) {
-  for (const trace::Parsed& file : runner::load_cases("conformance/cases")) {
-    for (const trace::Case& one : file.file.cases) {
-      for (const CaseScript& each : scripts_of(file.file, one)) {
-        const auto broken = watch(each.script, machine::step);
-        EXPECT_FALSE(broken) << one.name << ": " << text_of(broken);
-      }
-    }
+  for (const CaseScript& each : golden_scripts()) {
+    const auto broken = watch(each.script, machine::step);
+    EXPECT_FALSE(broken) << each.case_name << ": " << text_of(broken);
   }
 }
 
 TEST(Watched, TheMachineKeepsItsPromisesInChangedTraces) {
   std::mt19937 random(11);
   int runs = 0;
-  for (const Script& script : scripts_without_cases()) {
+  for (const CaseScript& each : golden_scripts()) {
     for (int i = 0; i < 20; ++i, ++runs) {
-      std::vector<std::uint8_t> bytes = encode(script);
+      std::vector<std::uint8_t> bytes = encode(each.script);
       for (int k = 0; k < 4; ++k) {
         bytes[random() % bytes.size()] = static_cast<std::uint8_t>(random());
       }
@@ -64,11 +49,11 @@ TEST(Watched, TheMachineKeepsItsPromisesInChangedTraces) {
 // Golden traces that lead a flaw astray break a promise; except for the flaw that needs two looks
 // at the same clock.
 TEST(Watched, FlawsBreakPromises) {
-  const std::vector<Script> scripts = scripts_without_cases();
+  const std::vector<CaseScript> scripts = golden_scripts();
   for (const flaws::Flaw& flaw : flaws::all()) {
     std::optional<Broken> first;
     for (std::size_t i = 0; i < scripts.size() && !first; ++i) {
-      first = watch(scripts[i], flaw.step);
+      first = watch(scripts[i].script, flaw.step);
     }
     if (flaw.seen == flaws::Seen::kTime) {
       EXPECT_FALSE(first) << flaw.name << ": " << text_of(first);

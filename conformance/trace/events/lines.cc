@@ -315,6 +315,16 @@ const std::string& NodeNames::link(Link link) const {
   return link == Link::kSerial ? serial : peis;
 }
 
+trace::NodeHeader header_of(const machine::Config& config, std::string name) {
+  trace::NodeHeader node;
+  node.name = std::move(name);
+  node.role = static_cast<trace::Role>(config.role);
+  if (config.role != machine::Role::kBaseStation) node.id = config.id;
+  if (config.role != machine::Role::kMote) node.island = config.island;
+  node.iut = true;
+  return node;
+}
+
 trace::LinkKind kind_of(Link link) {
   if (link == Link::kRadio) return trace::LinkKind::kRadio;
   return link == Link::kSerial ? trace::LinkKind::kSerial : trace::LinkKind::kPeis;

@@ -9,6 +9,7 @@
 #include "conformance/machine/actions.h"
 #include "conformance/machine/event.h"
 #include "conformance/machine/profile.h"
+#include "conformance/machine/state.h"
 #include "conformance/trace/concrete.h"
 #include "conformance/trace/parameters.h"
 
@@ -24,6 +25,9 @@ struct NodeNames {
 
   const std::string& link(machine::Link link) const;
 };
+
+/// Returns the header of a node under test: its role, id and island.
+trace::NodeHeader header_of(const machine::Config& config, std::string name);
 
 trace::LinkKind kind_of(machine::Link link);
 trace::AmFrame frame_of(const NodeNames& names, const machine::Frame& frame);

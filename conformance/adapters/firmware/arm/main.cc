@@ -21,11 +21,6 @@ uint16_t kept_seq_num __attribute__((section(".noinit")));
 volatile bool ticked;
 volatile uint16_t serial_bytes;
 
-uint8_t record[kRecordMax];
-volatile uint8_t record_size;  // 0: none yet.
-uint8_t record_awaited;
-uint8_t record_filled;
-
 class Arm : public Board {
  public:
   /// Returns the time; to be called more often than SysTick wraps, every 1.3 s.
@@ -100,19 +95,6 @@ Arm board;
 ArmSerialPort serial;
 Bench bench(board, serial);
 
-void take_record_byte(uint8_t byte) {
-  if (record_size != 0) return;  // The bench does not wait for its answer.
-  if (record_awaited == 0) {
-    record_awaited = byte <= kRecordMax ? byte : uint8_t{0};
-    record_filled = 0;
-    return;
-  }
-  record[record_filled++] = byte;
-  if (record_filled < record_awaited) return;
-  record_size = record_awaited;
-  record_awaited = 0;
-}
-
 }  // namespace
 
 extern "C" void timer0_handler() {
@@ -139,7 +121,7 @@ extern "C" void uart0_handler() {
 extern "C" void uart1_handler() {
   at(kUart1 + kUartClear) = kReceiveInterrupts;
   while ((at(kUart1 + kUartFlags) & kReceiveEmpty) == 0) {
-    take_record_byte(static_cast<uint8_t>(at(kUart1 + kUartData)));
+    bench.byte_received(static_cast<uint8_t>(at(kUart1 + kUartData)));
   }
 }
 
@@ -148,13 +130,9 @@ int main() {
   bench.hello();
   for (;;) {
     ticked = false;
-    if (record_size != 0) {
-      bench.handle(rubric::Bytes(record, record_size));
-      record_size = 0;
-    }
     bench.run();
     asm volatile("cpsid i" ::: "memory");  // Later interrupts wake the processor.
-    if (record_size == 0 && !serial.has_news() && !ticked) asm volatile("wfi");
+    if (!bench.has_record() && !serial.has_news() && !ticked) asm volatile("wfi");
     asm volatile("cpsie i" ::: "memory");
   }
 }

@@ -24,12 +24,6 @@ volatile Ticks ticks;
 volatile bool ticked;
 volatile uint16_t serial_bytes;
 
-// Records of the bench, one at a time.
-uint8_t record[kRecordMax];
-volatile uint8_t record_size;  // 0: none yet.
-uint8_t record_awaited;        // Bytes of the one that is coming.
-uint8_t record_filled;
-
 class Avr : public Board {
  public:
   Ticks now() const override { return whole(ticks); }
@@ -106,19 +100,7 @@ ISR(USART0_UDRE_vect) {
   }
 }
 
-ISR(USART1_RX_vect) {
-  const uint8_t byte = UDR1;
-  if (record_size != 0) return;  // The bench does not wait for its answer.
-  if (record_awaited == 0) {
-    record_awaited = byte <= kRecordMax ? byte : uint8_t{0};
-    record_filled = 0;
-    return;
-  }
-  record[record_filled++] = byte;
-  if (record_filled < record_awaited) return;
-  record_size = record_awaited;
-  record_awaited = 0;
-}
+ISR(USART1_RX_vect) { bench.byte_received(UDR1); }
 
 extern "C" void __cxa_pure_virtual() {
   for (;;) {
@@ -133,13 +115,9 @@ int main() {
   bench.hello();
   for (;;) {
     ticked = false;
-    if (record_size != 0) {
-      bench.handle(rubric::Bytes(record, record_size));
-      record_size = 0;
-    }
     bench.run();
     cli();  // Later interrupts wake the processor.
-    if (record_size == 0 && !serial.has_news() && !ticked) {
+    if (!bench.has_record() && !serial.has_news() && !ticked) {
       sleep_enable();
       sei();
       sleep_cpu();

@@ -35,6 +35,20 @@ void Bench::hello() {
   put16(sizeof(FirmwareNode));
 }
 
+void Bench::byte_received(uint8_t byte) {
+  if (record_size_ != 0) return;  // The bench does not wait for its answer.
+  if (record_awaited_ == 0) {
+    record_awaited_ = byte <= kRecordMax ? byte : uint8_t{0};
+    record_filled_ = 0;
+    return;
+  }
+  record_[record_filled_++] = byte;
+  if (record_filled_ < record_awaited_) return;
+  record_size_ = record_awaited_;
+  record_awaited_ = 0;
+}
+
+// Handles a record, from its tag on.
 void Bench::handle(Bytes record) {
   const Bytes body = record.from(1);
   Ticks due;
@@ -84,6 +98,10 @@ void Bench::set_busy(uint8_t line, bool busy) {
 }
 
 void Bench::run() {
+  if (record_size_ != 0) {
+    handle(Bytes(record_, record_size_));
+    record_size_ = 0;
+  }
   if (!started_) return;
   Ticks due = 0;
   if (serial_.has_news()) node_.run(now(), due);

@@ -55,9 +55,12 @@ class Bench : public Driver, public Application {
 
   /// Greets the bench after a reset.
   void hello();
-  /// Handles a record, from its tag on.
-  void handle(Bytes record);
-  /// Runs the node's own work; to be called after each interrupt.
+  /// Takes a byte of a record; to be called in the link's interrupt.
+  void byte_received(uint8_t byte);
+  /// Returns whether a record waits for run().
+  bool has_record() const { return record_size_ != 0; }
+  /// Handles the record that has come, and does the node's own work; to be called after each
+  /// interrupt.
   void run();
 
   void transmit(Line line, Bytes packet, bool link_ack) override;
@@ -70,6 +73,7 @@ class Bench : public Driver, public Application {
   void syn_data_received(ChannelId channel, DataStatus status) override;
 
  private:
+  void handle(Bytes record);
   void put16(uint16_t value);
   void put32(uint32_t value);
   void put_address(Address address);
@@ -94,6 +98,10 @@ class Bench : public Driver, public Application {
   Ticks time_ = 0;
   bool started_ = false;
   bool reported_ = true;
+  uint8_t record_[kRecordMax];
+  volatile uint8_t record_size_ = 0;  ///< 0: none yet.
+  uint8_t record_awaited_ = 0;        ///< Bytes of the one that is coming.
+  uint8_t record_filled_ = 0;
   uint8_t records_ = 0;
   uint8_t told_flags_ = 0;
   Ticks told_due_ = 0;

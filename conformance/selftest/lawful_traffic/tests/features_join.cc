@@ -44,9 +44,6 @@ bool in_vain(const Traffic& t, const Frames& f, std::size_t number, std::size_t 
          failed(t, 2) && !joined(t, 2) && replies(f, 2).empty() && !has_net_from(f, 2);
 }
 
-bool four_requests(const Traffic& t, const Frames& f) { return in_vain(t, f, 4, 1); }
-bool five_requests(const Traffic& t, const Frames& f) { return in_vain(t, f, 5, 1); }
-bool five_new(const Traffic& t, const Frames& f) { return in_vain(t, f, 5, 5); }
 bool request_same(const Traffic& t, const Frames& f) {
   return requests(f, 2).size() >= 2 && distinct_seqs(requests(f, 2)) == 1 && joined(t, 2) &&
          replies(f, 2).size() == 1;
@@ -87,8 +84,6 @@ bool five_ack_joins(const Frames& f, std::size_t dsns) {
          std::all_of(acks.begin(), acks.end(), same) && reports_of(f, 2) == 1 &&
          acks[4].time_us - acks[0].time_us < kShortestPeriodUs;
 }
-bool link_ack_lost(const Traffic&, const Frames& f) { return five_ack_joins(f, 5); }
-bool link_ack_lost_same_dsn(const Traffic&, const Frames& f) { return five_ack_joins(f, 1); }
 bool thrice(const Traffic&, const Frames& f) {
   return ack_joins(f, 2).size() == 3 && ack_joins(f, 3).size() == 3 && reports_of(f, 2) == 1;
 }
@@ -145,7 +140,6 @@ std::multiset<int> choices(const Frames& f) {
   }
   return out;
 }
-bool takes_first(const Traffic&, const Frames& f) { return choices(f).count(1) == 4; }
 bool takes_preferred(const Traffic&, const Frames& f) {
   const auto got = choices(f);
   return got.size() == 4 && got.count(0) == 0 && ack_joins(f, 2)[0].join_island() == 11 &&
@@ -190,9 +184,9 @@ bool leaves(const Traffic&, const Frames& f) {
 
 const std::vector<Feature>& join_features() {
   static const std::vector<Feature> kFeatures = {
-      {"four_requests", four_requests},
-      {"five_requests", five_requests},
-      {"five_requests_new_seq", five_new},
+      {"four_requests", [](auto& t, auto& f) { return in_vain(t, f, 4, 1); }},
+      {"five_requests", [](auto& t, auto& f) { return in_vain(t, f, 5, 1); }},
+      {"five_requests_new_seq", [](auto& t, auto& f) { return in_vain(t, f, 5, 5); }},
       {"request_lost_same_seq", request_same},
       {"request_lost_new_seq", request_new},
       {"reply_lost_same_seq", reply_same},
@@ -201,8 +195,8 @@ const std::vector<Feature>& join_features() {
       {"joins_again_at_once", again_at_once},
       {"joined_at_acceptance", at_acceptance},
       {"joined_at_link_ack", at_link_ack},
-      {"link_ack_lost", link_ack_lost},
-      {"link_ack_lost_same_dsn", link_ack_lost_same_dsn},
+      {"link_ack_lost", [](auto&, auto& f) { return five_ack_joins(f, 5); }},
+      {"link_ack_lost_same_dsn", [](auto&, auto& f) { return five_ack_joins(f, 1); }},
       {"ack_join_thrice", thrice},
       {"ack_join_often", often},
       {"unconfirmed_fails", unconfirmed_fails},
@@ -213,7 +207,7 @@ const std::vector<Feature>& join_features() {
       {"interleaved_joins", interleaved},
       {"full_list", full_list},
       {"full_list_answers", full_list_answers},
-      {"two_sinks_first", takes_first},
+      {"two_sinks_first", [](auto&, auto& f) { return choices(f).count(1) == 4; }},
       {"two_sinks_preferred", takes_preferred},
       {"wrong_sink_link_acks", wrong_sink},
       {"same_devid", same_devid},

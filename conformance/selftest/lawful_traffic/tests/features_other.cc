@@ -55,8 +55,6 @@ std::int64_t longest(const Frames& data) {
   const auto some = gaps(data);
   return *std::max_element(some.begin(), some.end());
 }
-bool esn(const Traffic&, const Frames& f) { return channel_app(f, 11); }
-bool learning(const Traffic&, const Frames& f) { return channel_app(f, 6); }
 bool constant(const Traffic&, const Frames& f) {
   const Frames data = channel(f, 2, 1);
   return data.size() > 8 && same_as_before(data) == data.size() - 1 && all_gaps(data, one_period);
@@ -140,12 +138,10 @@ bool skew(const Traffic&, const Frames& f) {
   const auto ms = static_cast<std::int64_t>(some[0].cur_time());
   return std::abs(ms - some[0].time_us / 1000) > 1000;
 }
-bool binary(const Traffic&, const Frames& f) { return grows_by(f, 1.024); }
 bool wraps(const Traffic&, const Frames& f) {
   const Frames some = pick(f, [](const Seen& s) { return s.is(AmType::kJoinReply); });
   return grows_by(f, 1) && some.back().cur_time() < some.front().cur_time();
 }
-bool uptime(const Traffic& t, const Frames& f) { return grows_by(f, 1) && skew(t, f); }
 bool busy(const Traffic&, const Frames& f) {
   const auto some = gaps(requests(f, 2));
   const auto [low, high] = std::minmax_element(some.begin(), some.end());
@@ -209,8 +205,8 @@ bool serial_only(const Traffic&, const Frames& f) {
 const std::vector<Feature>& other_features() {
   static const std::vector<Feature> kFeatures = {
       {"usual", usual},
-      {"syn_esn_data", esn},
-      {"syn_learning", learning},
+      {"syn_esn_data", [](auto&, auto& f) { return channel_app(f, 11); }},
+      {"syn_learning", [](auto&, auto& f) { return channel_app(f, 6); }},
       {"syn_constant", constant},
       {"syn_power_save", power_save},
       {"syn_stop_restart", stop_restart},
@@ -224,9 +220,9 @@ const std::vector<Feature>& other_features() {
       {"timers_fast", timers_fast},
       {"timers_real_ms", timers_real},
       {"clock_skew", skew},
-      {"cur_time_binary", binary},
+      {"cur_time_binary", [](auto&, auto& f) { return grows_by(f, 1.024); }},
       {"cur_time_wraps", wraps},
-      {"cur_time_uptime", uptime},
+      {"cur_time_uptime", [](auto& t, auto& f) { return grows_by(f, 1) && skew(t, f); }},
       {"busy_channel", busy},
       {"stated_join_timer", stated_join_timer},
       {"stated_slow_join_timer", stated_slow_join_timer},

@@ -24,9 +24,6 @@ bool ack_sizes(const Frames& f, bool with_paper, bool with_deployed) {
   return sizes.size() == (with_paper ? 1u : 0u) + (with_deployed ? 1u : 0u) &&
          (sizes.count(4) == 1) == with_paper && (sizes.count(6) == 1) == with_deployed;
 }
-bool ack_deployed(const Traffic&, const Frames& f) { return ack_sizes(f, false, true); }
-bool ack_paper(const Traffic&, const Frames& f) { return ack_sizes(f, true, false); }
-bool ack_per_node(const Traffic&, const Frames& f) { return ack_sizes(f, true, true); }
 
 /// Returns whether an ack failed, and each failure came `wait_us` after its send.
 bool fails_after(const Traffic& t, std::int64_t wait_us) {
@@ -44,8 +41,6 @@ bool fails_after(const Traffic& t, std::int64_t wait_us) {
   }
   return fails > 0;
 }
-bool timeout_short(const Traffic& t, const Frames&) { return fails_after(t, 400'000); }
-bool timeout_long(const Traffic& t, const Frames&) { return fails_after(t, 3'000'000); }
 
 /// Returns whether some message came again from its source, later than any timeout.
 bool comes_again(const Frames& f, bool same_seq) {
@@ -62,8 +57,6 @@ bool comes_again(const Frames& f, bool same_seq) {
   }
   return false;
 }
-bool resend_new(const Traffic&, const Frames& f) { return comes_again(f, false); }
-bool resend_same(const Traffic&, const Frames& f) { return comes_again(f, true); }
 
 bool about_unknown(const Seen& s) { return s.net && s.net->payload[1] == kUnknownApp; }
 bool unknown_acked(const Traffic&, const Frames& f) {
@@ -104,8 +97,6 @@ bool counts_up(const Frames& f) {
   }
   return seqs.size() > 5;
 }
-bool seq_random(const Traffic&, const Frames& f) { return !counts_up(f); }
-bool seq_counting(const Traffic&, const Frames& f) { return counts_up(f); }
 bool seq_ffff(const Traffic&, const Frames& f) {
   const auto seqs = seqs_of(f, 3);
   return counts_up(f) && std::find(seqs.begin(), seqs.end(), kNoSeq) != seqs.end();
@@ -211,12 +202,9 @@ int copies_by_sinks(const Frames& f) {
   for (const auto& [seq, number] : copies) most = std::max(most, number);
   return most;
 }
-bool other_ignored(const Traffic&, const Frames& f) { return copies_by_sinks(f) == 1; }
-bool other_relayed(const Traffic&, const Frames& f) { return copies_by_sinks(f) == 2; }
 bool direct_to_pc(const Seen& s) {
   return out(s) && s.interface == "serial:101" && from_pid(s, 11) && to_pid(s, 12);
 }
-bool source_forwarded(const Traffic&, const Frames& f) { return any(f, direct_to_pc); }
 bool source_ignored(const Traffic&, const Frames& f) {
   return !any(f, direct_to_pc) && any(f, [](const Seen& s) {
     return s.radio && from_pid(s, 11) && s.net->dest == Address{12, kNull};
@@ -249,8 +237,6 @@ bool forwarded_with(const Frames& f, std::uint8_t nbytes) {
     return s.payload.size() == 114 && s.payload[11] == nbytes;
   });
 }
-bool serial_true(const Traffic&, const Frames& f) { return forwarded_with(f, 16); }
-bool serial_whole(const Traffic&, const Frames& f) { return forwarded_with(f, 102); }
 bool serial_cut(const Traffic&, const Frames& f) {
   const auto cut = [](const Seen& s) {
     return !s.radio && s.is(AmType::kNet) && s.payload.size() < 114;
@@ -273,8 +259,6 @@ bool host_repeats(const Frames& f, bool damaged) {
   }
   return false;
 }
-bool serial_resends(const Traffic&, const Frames& f) { return host_repeats(f, true); }
-bool serial_ack_lost(const Traffic&, const Frames& f) { return host_repeats(f, false); }
 bool looped(const Seen& s) {
   return in(s) && s.interface == "serial:1" && to_pid(s, 12) && from_pid(s, 11);
 }
@@ -289,21 +273,21 @@ bool loops_radiated(const Traffic&, const Frames& f) {
 
 const std::vector<Feature>& transport_features() {
   static const std::vector<Feature> kFeatures = {
-      {"ack_deployed", ack_deployed},
-      {"ack_paper", ack_paper},
-      {"ack_per_node", ack_per_node},
-      {"ack_timeout_short", timeout_short},
-      {"ack_timeout_long", timeout_long},
-      {"app_resends_new_seq", resend_new},
-      {"app_resends_same_seq", resend_same},
+      {"ack_deployed", [](auto&, auto& f) { return ack_sizes(f, false, true); }},
+      {"ack_paper", [](auto&, auto& f) { return ack_sizes(f, true, false); }},
+      {"ack_per_node", [](auto&, auto& f) { return ack_sizes(f, true, true); }},
+      {"ack_timeout_short", [](auto& t, auto&) { return fails_after(t, 400'000); }},
+      {"ack_timeout_long", [](auto& t, auto&) { return fails_after(t, 3'000'000); }},
+      {"app_resends_new_seq", [](auto&, auto& f) { return comes_again(f, false); }},
+      {"app_resends_same_seq", [](auto&, auto& f) { return comes_again(f, true); }},
       {"unknown_app_acked", unknown_acked},
       {"unknown_app_silent", unknown_silent},
       {"tester_reliable_dropped", odd_dropped},
       {"tester_reliable_taken", odd_taken},
       {"tester_nbytes", tester_nbytes},
       {"host_nbytes", host_nbytes},
-      {"seq_random", seq_random},
-      {"seq_counting", seq_counting},
+      {"seq_random", [](auto&, auto& f) { return !counts_up(f); }},
+      {"seq_counting", [](auto&, auto& f) { return counts_up(f); }},
       {"seq_near_end", seq_near_end},
       {"seq_ffff", seq_ffff},
       {"answer_before_ack", answer_first},
@@ -318,20 +302,20 @@ const std::vector<Feature>& transport_features() {
       {"wide_refused", wide_refused},
       {"wide_forwarded", wide_forwarded},
       {"wide_to_sink", wide_to_sink},
-      {"other_mote_ignored", other_ignored},
-      {"other_mote_relayed", other_relayed},
-      {"foreign_source_forwarded", source_forwarded},
+      {"other_mote_ignored", [](auto&, auto& f) { return copies_by_sinks(f) == 1; }},
+      {"other_mote_relayed", [](auto&, auto& f) { return copies_by_sinks(f) == 2; }},
+      {"foreign_source_forwarded", [](auto&, auto& f) { return any(f, direct_to_pc); }},
       {"foreign_source_ignored", source_ignored},
       {"foreign_mote_to_sink", to_foreign_sink},
       {"inter_island_true", inter_true},
       {"inter_island_whole", inter_whole},
       {"three_islands", three_islands},
-      {"serial_true", serial_true},
-      {"serial_whole", serial_whole},
+      {"serial_true", [](auto&, auto& f) { return forwarded_with(f, 16); }},
+      {"serial_whole", [](auto&, auto& f) { return forwarded_with(f, 102); }},
       {"serial_cut", serial_cut},
       {"serial_dest_zero", dest_zero},
-      {"serial_resends", serial_resends},
-      {"serial_ack_lost", serial_ack_lost},
+      {"serial_resends", [](auto&, auto& f) { return host_repeats(f, true); }},
+      {"serial_ack_lost", [](auto&, auto& f) { return host_repeats(f, false); }},
       {"host_loops_ignored", loops_ignored},
       {"host_loops_radiated", loops_radiated},
   };

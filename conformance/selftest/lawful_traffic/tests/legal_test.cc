@@ -133,19 +133,6 @@ TEST(Legal, EveryDecisionHasAVariantOrAReason) {
   EXPECT_THAT(readme(), ::testing::HasSubstr(sentence));
 }
 
-TEST(Legal, ReadmeHasTheTable) {
-  const std::string text = readme();
-  for (const Variant& variant : variants()) {
-    std::string numbers;
-    for (const int decision : variant.decisions) {
-      numbers += (numbers.empty() ? "" : ", ") + std::to_string(decision);
-    }
-    const std::string row =
-        "| `" + std::string(variant.name) + "` | " + (numbers.empty() ? "-" : numbers) + " | ";
-    EXPECT_THAT(text, ::testing::HasSubstr(row + std::string(variant.summary)));
-  }
-}
-
 TEST(Legal, NamesAreUnique) {
   std::set<std::string_view> names;
   for (const Variant& variant : variants()) EXPECT_TRUE(names.insert(variant.name).second);
