@@ -363,7 +363,7 @@ class Decoder {
 
   bool array(const Field& f, std::uint32_t base, std::uint32_t& at, std::uint32_t limit) {
     const std::uint32_t width = f.kind == Kind::kStruct ? f.type->max_size : f.width_bytes;
-    if (f.kind == Kind::kStruct && f.type->min_size != width) {
+    if (f.kind == Kind::kStruct && (f.type->min_size != width || width == 0)) {
       return varying(f, base, at, limit);
     }
     std::int64_t count = 0;
@@ -403,13 +403,13 @@ class Decoder {
     const std::uint32_t begin = at;
     bool good = true;
     std::uint32_t elements = 0;
-    // Elements without a byte would never come to the end.
-    for (std::int64_t i = 0; good && i < count && !(at == limit && (to_end || i > kMostEmpty));
-         ++i, ++elements) {
+    while (good && elements < count && !(to_end && at == limit)) {
       const std::size_t element = count_;
       good = structure(*f.type, &f, at, limit);
       at += nodes_[element].size;
-      if (to_end && nodes_[element].size == 0) break;
+      ++elements;
+      // Elements without a byte would never come to the end.
+      if (nodes_[element].size == 0 && (to_end || elements > kMostEmpty)) break;
     }
     Node& node = nodes_[index];
     node.size = at - begin;

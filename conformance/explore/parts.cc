@@ -329,8 +329,22 @@ std::span<const PartInfo> parts() {
        message_trigger,
        message_networks,
        nullptr},
-      synaptic_output(),
-      synaptic_input(),
+      {"output",
+       "An output channel of synaptic communication",
+       {"no channel", "stopped", "started"},
+       has_sink_role,
+       output_state,
+       output_trigger,
+       nullptr,
+       output_alphabet},
+      {"input",
+       "An input channel of synaptic communication",
+       {"no channel", "stopped", "started"},
+       has_sink_role,
+       input_state,
+       input_trigger,
+       nullptr,
+       input_alphabet},
   }};
   return kParts;
 }
@@ -343,34 +357,7 @@ const PartInfo* find_part(std::string_view name) {
 }
 
 Message message_of(const machine::Transmit& frame) {
-  const Bytes bytes = frame.bytes();
-  const trace::LinkKind kind = frame.link == machine::Link::kRadio    ? trace::LinkKind::kRadio
-                               : frame.link == machine::Link::kSerial ? trace::LinkKind::kSerial
-                                                                      : trace::LinkKind::kPeis;
-  return trace::decode({frame.dest, frame.src, 0, frame.type, {bytes.begin(), bytes.end()}}, kind)
-      .message;
-}
-
-PartInfo synaptic_output() {
-  return {"output",
-          "An output channel of synaptic communication",
-          {"no channel", "stopped", "started"},
-          has_sink_role,
-          output_state,
-          output_trigger,
-          nullptr,
-          output_alphabet};
-}
-
-PartInfo synaptic_input() {
-  return {"input",
-          "An input channel of synaptic communication",
-          {"no channel", "stopped", "started"},
-          has_sink_role,
-          input_state,
-          input_trigger,
-          nullptr,
-          input_alphabet};
+  return trace::decode(events::frame_of({}, frame.frame()), events::kind_of(frame.link)).message;
 }
 
 }  // namespace rubric::explore

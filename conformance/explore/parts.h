@@ -32,9 +32,6 @@ struct PartInfo {
   std::vector<Given> (*alphabet)(const machine::Profile& profile);
 };
 
-PartInfo synaptic_output();
-PartInfo synaptic_input();
-
 /// Returns all parts, with unique names, in the order in which they are drawn; they live as long as
 /// the program.
 std::span<const PartInfo> parts();

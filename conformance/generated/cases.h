@@ -17,7 +17,7 @@ struct CaseUse {
 };
 
 /// By file, then as they stand there; each case once for a rule and a sign.
-inline constexpr std::array<CaseUse, 2560> kCaseUses{{
+inline constexpr std::array<CaseUse, 2571> kCaseUses{{
     {"after_set_island.base_station",
      "conformance/cases/after_set_island.rtr", "N9-SET"_rule, false},
     {"after_set_island.base_station",
@@ -446,6 +446,8 @@ inline constexpr std::array<CaseUse, 2560> kCaseUses{{
     {"edges_j.timer_over_16_bits", "conformance/cases/edges_j.rtr", "J8-RETRY"_rule, false},
     {"edges_j.sink_asked_again", "conformance/cases/edges_j.rtr", "J3-REPLY"_rule, false},
     {"edges_j.sink_asked_again", "conformance/cases/edges_j.rtr", "J3-TIME"_rule, false},
+    {"edges_j.request_by_serial", "conformance/cases/edges_j.rtr", "J3-ONCE"_rule, true},
+    {"edges_j.no_actuators", "conformance/cases/edges_j.rtr", "J3-REPLY"_rule, false},
     {"edges_n.mote_local_device", "conformance/cases/edges_n.rtr", "N4-SELF"_rule, false},
     {"edges_n.mote_local_device", "conformance/cases/edges_n.rtr", "N4-SELF"_rule, true},
     {"edges_n.sink_local_device", "conformance/cases/edges_n.rtr", "N4-SELF"_rule, false},
@@ -857,6 +859,8 @@ inline constexpr std::array<CaseUse, 2560> kCaseUses{{
     {"j9.interleave", "conformance/cases/j9.rtr", "J6-ADD"_rule, false},
     {"j9.numbers_do_not_mix", "conformance/cases/j9.rtr", "J6-SEQ"_rule, true},
     {"j9.numbers_do_not_mix", "conformance/cases/j9.rtr", "J9-INTERLEAVE"_rule, true},
+    {"j9.one_number_of_two", "conformance/cases/j9.rtr", "J3-REPLY"_rule, false},
+    {"j9.one_number_of_two", "conformance/cases/j9.rtr", "J9-INTERLEAVE"_rule, false},
     {"leaving.sink", "conformance/cases/leaving.rtr", "J3-REPLY"_rule, false},
     {"leaving.sink", "conformance/cases/leaving.rtr", "J6-ADD"_rule, false},
     {"leaving.sink", "conformance/cases/leaving.rtr", "J2-LISTED"_rule, true},
@@ -1340,6 +1344,13 @@ inline constexpr std::array<CaseUse, 2560> kCaseUses{{
     {"mote_joins.radio_counts_on", "conformance/cases/mote_joins.rtr", "J8-LIMIT"_rule, true},
     {"mote_joins.three_failures", "conformance/cases/mote_joins.rtr", "J8-FAIL"_rule, false},
     {"mote_joins.three_failures", "conformance/cases/mote_joins.rtr", "J1-REQUEST"_rule, false},
+    {"mote_joins.sink_of_a_stray_reply",
+     "conformance/cases/mote_joins.rtr", "J5-SUCCESS"_rule, false},
+    {"mote_joins.sink_of_a_stray_reply",
+     "conformance/cases/mote_joins.rtr", "J4-JOINED"_rule, false},
+    {"mote_joins.others_talk", "conformance/cases/mote_joins.rtr", "J8-RETRY"_rule, false},
+    {"mote_joins.call_while_off", "conformance/cases/mote_joins.rtr", "J5-ONCE"_rule, false},
+    {"mote_joins.no_actuators", "conformance/cases/mote_joins.rtr", "J1-REQUEST"_rule, false},
     {"mote_numbers.equal", "conformance/cases/mote_numbers.rtr", "T2-DELIVER"_rule, false},
     {"mote_numbers.equal", "conformance/cases/mote_numbers.rtr", "T1-DELIVER"_rule, false},
     {"mote_numbers.equal", "conformance/cases/mote_numbers.rtr", "N5-DELIVER"_rule, false},
@@ -1354,6 +1365,7 @@ inline constexpr std::array<CaseUse, 2560> kCaseUses{{
      "conformance/cases/mote_values.rtr", "T2-CONTENT"_rule, false},
     {"mote_values.learning_codes", "conformance/cases/mote_values.rtr", "T1-DELIVER"_rule, false},
     {"mote_values.unknown_ones", "conformance/cases/mote_values.rtr", "T1-UNKNOWN"_rule, false},
+    {"mote_values.read_updates", "conformance/cases/mote_values.rtr", "T1-DELIVER"_rule, false},
     {"mote_waiting.busy_application",
      "conformance/cases/mote_waiting.rtr", "T3-SUCCESS"_rule, false},
     {"mote_waiting.busy_application",
@@ -1701,6 +1713,7 @@ inline constexpr std::array<CaseUse, 2560> kCaseUses{{
     {"n6.other", "conformance/cases/n6.rtr", "N6-ONCE"_rule, true},
     {"n6.other", "conformance/cases/n6.rtr", "N7-CONTENT"_rule, true},
     {"n6.other", "conformance/cases/n6.rtr", "N6-OTHER"_rule, true},
+    {"n6.ack_to_a_foreign_mote", "conformance/cases/n6.rtr", "N6-OWN"_rule, true},
     {"n7.deliver", "conformance/cases/n7.rtr", "N7-DELIVER"_rule, false},
     {"n7.deliver", "conformance/cases/n7.rtr", "N7-DELIVER"_rule, true},
     {"n7.deliver", "conformance/cases/n7.rtr", "N7-RADIO"_rule, false},

@@ -412,6 +412,18 @@ class File(Folder):
         done = rubric("decode", "--spec", radio, stdin="")
         self.assertIn("carrier radio_t does not end in a message", done.stderr)
 
+    def test_what_takes_no_byte_does_not_repeat(self):
+        """Its elements would never end."""
+        for repeat in ("eos", "expr, repeat-expr: n"):
+            for part in ("[]", "[{id: b, size: 0}]"):
+                file = self.file("meta: {id: e, endian: be}\nseq:\n  - {id: n, type: u4}\n"
+                                 f"  - {{id: x, type: nul, repeat: {repeat}}}\n"
+                                 f"types: {{nul: {{seq: {part}}}}}\n")
+                for command in (("decode", "--as", "e"), ("generate", "--count", "2")):
+                    done = rubric(command[0], "--spec", file, *command[1:], stdin="ffffffff\n")
+                    self.assertEqual(done.returncode, 66)
+                    self.assertIn("'x' repeats what takes no byte", done.stderr)
+
     def test_files_that_never_end_are_refused_at_once(self):
         endless, pipe, large, folder = (self.folder / f"{name}.ksy"
                                         for name in ("endless", "pipe", "large", "folder"))

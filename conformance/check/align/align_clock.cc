@@ -303,6 +303,7 @@ class Fit {
 
   ClockFit fit() {
     if ((points_.empty() ? guesses_near_zero() : near_zero()) && guesses_in_order()) {
+      if (steps(0, 0)) return unsure(kSteps);
       out_.clocks = Clocks::kAgree;
       out_.frames = points_.size();
       return out_;
@@ -317,6 +318,7 @@ class Fit {
       return unsure("the " + count_text(in_.size()) +
                     " that are in both are fewer than those of the same time that are not");
     }
+    if (steps(in_.front().ahead_us, in_.back().ahead_us)) return unsure(kSteps);
     return judge();
   }
 
@@ -339,7 +341,7 @@ class Fit {
     if (!find_inliers()) return out_;
     const std::size_t others = points_.size() - in_.size();
     if (others >= kFramesMin && kStepShare * others > points_.size()) {
-      return unsure("its clock steps, or many events are in one of them only");
+      return unsure(kSteps);
     }
     const std::int64_t base_us = in_.front().ahead_us;
     out_.drift = drift_of(in_, base_us);
@@ -399,6 +401,25 @@ class Fit {
     }
     unsure("the " + count_text(points_.size()) + " that are in both do not lie equally far apart");
     return false;
+  }
+
+  static constexpr const char* kSteps = "its clock steps, or many events are in one of them only";
+
+  // Returns whether the first pairs, or the last ones, agree on another shift than those after or
+  // before them.
+  bool steps(std::int64_t first_us, std::int64_t last_us) const {
+    const std::int64_t most_us = options_.response_us + kSlackUs + options_.skew_us;
+    const auto in_a_row = [&](auto from, auto to, std::int64_t ahead_us) {
+      const auto end = std::find_if(from, to, [&](const Point& point) {
+        return std::abs(point.ahead_us - ahead_us) <= most_us;
+      });
+      if (static_cast<std::size_t>(end - from) < kFramesMin) return false;
+      const auto [low, high] = std::minmax_element(
+          from, end, [](const Point& a, const Point& b) { return a.ahead_us < b.ahead_us; });
+      return high->ahead_us - low->ahead_us <= most_us;
+    };
+    return in_a_row(points_.begin(), points_.end(), first_us) ||
+           in_a_row(points_.rbegin(), points_.rend(), last_us);
   }
 
   ClockFit unsure(std::string why) {

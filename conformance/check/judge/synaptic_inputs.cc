@@ -67,12 +67,30 @@ void SynapticWatch::refused(std::uint16_t device, const Observation& seen, const
 }
 
 // The value that read_input_value tells is not judged: data may have been lost or be on their way.
+// Reports calls that returned nothing until `now_us`. Only a whole log surely has each result.
+void SynapticWatch::judge_untold(std::uint16_t device, std::int64_t now_us) {
+  std::erase_if(nodes_[device].wanted, [&](const Wanted& one) {
+    if (!context_.device(device).whole || !context_.run.has_time) return true;
+    if (now_us <= context_.due_us(device, one.called.time_us)) return false;
+    context_.report(one.rule, Severity::kFail, one.called, device,
+                    {"The application called an operation on a channel, and was told no result "
+                     "within " +
+                         ms_text(context_.response_us(device)) + ".",
+                     "The result, at once.",
+                     {}});
+    return true;
+  });
+}
+
 void SynapticWatch::told(std::uint16_t device, const Observation& seen,
                          const machine::Notice& result) {
   Node& node = nodes_[device];
-  if (node.wanted.empty() || node.wanted.front().result.index() != result.index()) return;
-  const Wanted wanted = node.wanted.front();
-  node.wanted.erase(node.wanted.begin());
+  // The results of calls before it may never come.
+  const auto its = std::ranges::find_if(
+      node.wanted, [&](const Wanted& one) { return one.result.index() == result.index(); });
+  if (its == node.wanted.end()) return;
+  const Wanted wanted = *its;
+  node.wanted.erase(its);
   const machine::Notice& want = wanted.result;
   const ReqId rule = wanted.rule;
   if (!succeeds(want)) return;

@@ -58,10 +58,7 @@ SynapticWatch::Out* SynapticWatch::find(Node& node, machine::ChannelId id) {
 void SynapticWatch::called(std::uint16_t device, const Observation& seen, machine::Address own) {
   Node& node = nodes_[device];
   const std::int64_t now_us = seen.place.time_us;
-  // Only a log that has all of a node surely has each result.
-  std::erase_if(node.wanted, [&](const Wanted& one) {
-    return !context_.device(device).whole || now_us - one.called_us > context_.response_us(device);
-  });
+  judge_untold(device, now_us);
   const bool creates = std::holds_alternative<machine::CreateChannel>(*seen.call);
   // The clock may be set before there is a channel.
   const bool steps = std::holds_alternative<machine::SetTimeStep>(*seen.call);
@@ -87,7 +84,7 @@ void SynapticWatch::called(std::uint16_t device, const Observation& seen, machin
                          context_.actions);
   for (const machine::Action& action : context_.actions.all()) {
     if (action.what != machine::Action::What::kNotify) continue;
-    node.wanted.push_back({context_.actions.notice_of(action), action.requirement, now_us});
+    node.wanted.push_back({context_.actions.notice_of(action), action.requirement, seen.place});
   }
   if (const auto* create = std::get_if<machine::CreateChannel>(seen.call)) {
     const machine::ChannelId id = machine::channel_id(create->peer.devid, config.id);
@@ -568,7 +565,10 @@ void SynapticWatch::settle_at(std::uint16_t device, std::int64_t now_us) {
 }
 
 void SynapticWatch::finish() {
-  for (std::uint16_t i = 0; i < nodes_.size(); ++i) settle(i, context_.end_us(i));
+  for (std::uint16_t i = 0; i < nodes_.size(); ++i) {
+    settle(i, context_.end_us(i));
+    judge_untold(i, context_.end_us(i));
+  }
 }
 
 }  // namespace rubric::check

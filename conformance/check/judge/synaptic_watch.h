@@ -107,7 +107,7 @@ class SynapticWatch {
   struct Wanted {
     machine::Notice result;
     ReqId rule = ReqId::kNone;
-    std::int64_t called_us = 0;
+    Place called;
   };
   /// What a call that is refused after all has not changed.
   struct Former {
@@ -148,6 +148,7 @@ class SynapticWatch {
   static bool is_twin(const Node& node, machine::ChannelId id);
   static bool may_be_local(machine::ChannelId id);
   void refused(std::uint16_t device, const Observation& seen, const Wanted& wanted);
+  void judge_untold(std::uint16_t device, std::int64_t now_us);
   void told_of_unknown(std::uint16_t device, const Observation& seen, machine::ChannelId id);
   void told_of_nothing(std::uint16_t device, const Observation& seen, machine::ChannelId id);
   bool flooded(std::uint16_t device, const Unknown& one) const;

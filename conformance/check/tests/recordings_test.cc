@@ -392,6 +392,24 @@ TEST(LawfulCaptures, TheClockOfOneTapSteps) {
   }
 }
 
+TEST(LawfulCaptures, TheClockOfOneRecorderSteps) {
+  for (const char* scenario : {"timeline", "home", "hospital"}) {
+    const Recorded run = recorded(scenario);
+    for (const int ms : {1800, 2100}) {
+      for (const int from : {4, 12}) {
+        int lines = 0;
+        const auto stepped = [&](Packet& packet) {
+          if (is_radio(packet)) return 0;
+          packet.time_ns += ++lines > from ? std::int64_t{ms} * 1'000'000 : 0;
+          return 1;
+        };
+        EXPECT_EQ(broken_in(judge(read_apart(run.capture, 2, stepped, {}), complete())), "")
+            << scenario << " " << ms << " from packet " << from;
+      }
+    }
+  }
+}
+
 // A sniffer hears noise; what it hears damaged, nodes may have heard well.
 TEST(LawfulCaptures, FramesComeDamaged) {
   for (const char* scenario : kScenarios) {

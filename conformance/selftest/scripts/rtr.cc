@@ -24,13 +24,15 @@ std::uint64_t seed_of(std::uint16_t first_seq) {
 
 events::NodeNames names_of(const std::string& node) { return {node, "rA", "serA"}; }
 
-// The machine as the runner's target, which records its inputs.
+// The machine as the runner's target, which records its inputs, and its outputs at its end.
 class Recorder : public runner::SubjectTarget {
  public:
-  explicit Recorder(Script& out) : SubjectTarget(std::make_unique<runner::Machine>()), out_(out) {}
+  explicit Recorder(CaseScript& out)
+      : SubjectTarget(std::make_unique<runner::Machine>()), out_(out) {}
+  ~Recorder() override { out_.outputs = SubjectTarget::outputs(); }
 
   void reset(const machine::Config& config) override {
-    out_.config = config;
+    out_.script.config = config;
     SubjectTarget::reset(config);
   }
   void give(Ticks now, const machine::Event& event) override {
@@ -41,7 +43,7 @@ class Recorder : public runner::SubjectTarget {
       if (auto* send = std::get_if<machine::Send>(&called->call)) step.bytes = taken(send->data);
     }
     last_ = now;
-    out_.steps.push_back(std::move(step));
+    out_.script.steps.push_back(std::move(step));
     SubjectTarget::give(now, event);
   }
 
@@ -52,25 +54,8 @@ class Recorder : public runner::SubjectTarget {
     return out;
   }
 
-  Script& out_;
-  Ticks last_ = 0;
-};
-
-// Keeps the outputs after the runner's target is gone.
-class Keeper : public runner::Target {
- public:
-  Keeper(CaseScript& out) : out_(out), target_(out.script) {}
-  ~Keeper() override { out_.outputs = target_.outputs(); }
-  void reset(const machine::Config& config) override { target_.reset(config); }
-  void give(Ticks now, const machine::Event& event) override { target_.give(now, event); }
-  std::optional<Ticks> next() const override { return target_.next(); }
-  Ticks run_until(Ticks time) override { return target_.run_until(time); }
-  const std::vector<Output>& outputs() const override { return target_.outputs(); }
-  void hold_link_acks(bool hold) override { target_.hold_link_acks(hold); }
-
- private:
   CaseScript& out_;
-  Recorder target_;
+  Ticks last_ = 0;
 };
 
 // Returns whether it sends more bytes at once, lasts longer, or has more steps, than any script.
@@ -89,7 +74,7 @@ void add_scripts(const trace::File& file, const trace::Case& one, std::vector<Ca
   std::vector<std::unique_ptr<CaseScript>> made;
   const auto make = [&](const trace::NodeHeader& node) -> std::unique_ptr<runner::Target> {
     made.push_back(std::make_unique<CaseScript>(CaseScript{one.name, node.name, {}, {}}));
-    return std::make_unique<Keeper>(*made.back());
+    return std::make_unique<Recorder>(*made.back());
   };
   const runner::CaseResult result = runner::run_case(file, one, make);
   if (result.verdict == runner::CaseVerdict::kError) {

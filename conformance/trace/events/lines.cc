@@ -4,13 +4,13 @@
 #include <string>
 #include <type_traits>
 #include <utility>
+#include <variant>
 
 #include "conformance/trace/schema.h"
 
 namespace rubric::events {
 
 using machine::Address;
-using machine::Descriptor;
 using trace::AppField;
 using trace::AppMessage;
 using trace::Concrete;
@@ -61,24 +61,23 @@ class Writer {
   explicit Writer(std::string_view name)
       : message_(Message::named(name)), app_(trace::Schema::get().find(name)->app) {}
 
-  Writer& number(std::int64_t value) { return add(Domain::of(field()).show(value)); }
-  Writer& address(Address value) { return add(Value::address(value.pid, value.devid)); }
-  Writer& channel(machine::ChannelId id) { return add(Value::channel(id)); }
-  Writer& real(float value) { return add(Value::real(value)); }
-  Writer& bytes(Bytes value) {
-    return add(Value::bytes({reinterpret_cast<const char*>(value.data()), value.size()}));
+  template <class T>
+  void number(T value) {
+    add(Domain::of(field()).show(static_cast<std::int64_t>(value)));
   }
-  Writer& descriptor(const Descriptor& value) {
-    return number(value.mote_type).number(value.transducers).number(value.actuators);
+  void address(Address value) { add(Value::address(value.pid, value.devid)); }
+  void channel(machine::ChannelId id) { add(Value::channel(id)); }
+  void real(float value) { add(Value::real(value)); }
+  void bytes(Bytes value) {
+    add(Value::bytes({reinterpret_cast<const char*>(value.data()), value.size()}));
   }
   Message take() { return std::move(message_); }
 
  private:
   const AppField& field() const { return app_->fields[next_]; }
-  Writer& add(Value value) {
+  void add(Value value) {
     message_.with(field().name, std::move(value));
     ++next_;
-    return *this;
   }
 
   Message message_;
@@ -96,30 +95,27 @@ class Reader {
 
   bool named(std::string_view name) const { return app_ && name == app_->name; }
 
-  template <typename T>
-  T number() {
-    return static_cast<T>(from_.number(next()).value_or(0));
+  template <class T>
+  void number(T& out) {
+    out = static_cast<T>(from_.number(next()).value_or(0));
   }
-  Address address() {
+  void address(Address& out) {
     const auto pair = from_.pair(next()).value_or(std::pair<std::uint16_t, std::uint16_t>());
-    return {pair.first, pair.second};
+    out = {pair.first, pair.second};
   }
-  machine::ChannelId channel() {
-    const auto [source, destination] = address();
-    return static_cast<machine::ChannelId>(source) << 16 | destination;
+  void channel(machine::ChannelId& out) {
+    Address ends;
+    address(ends);
+    out = machine::ChannelId{ends.pid} << 16 | ends.devid;
   }
-  float real() { return std::bit_cast<float>(number<std::uint32_t>()); }
-  Bytes bytes() {
+  void real(float& out) {
+    std::uint32_t bits = 0;
+    number(bits);
+    out = std::bit_cast<float>(bits);
+  }
+  void bytes(Bytes& out) {
     const trace::Leaf* leaf = from_.leaf(next());
-    if (!leaf) return {};
-    return {reinterpret_cast<const std::uint8_t*>(leaf->bytes.data()), leaf->bytes.size()};
-  }
-  Descriptor descriptor() {
-    Descriptor out;
-    out.mote_type = number<std::uint8_t>();
-    out.transducers = number<std::uint16_t>();
-    out.actuators = number<std::uint8_t>();
-    return out;
+    if (leaf) out = {reinterpret_cast<const std::uint8_t*>(leaf->bytes.data()), leaf->bytes.size()};
   }
 
  private:
@@ -130,182 +126,64 @@ class Reader {
   std::size_t next_ = 0;
 };
 
-struct CallWriter {
-  Message operator()(const machine::JoinIsland& c) const {
-    return Writer("join").descriptor(c.descriptor).take();
+// Passes the fields of a call or a notice to a Writer or a Reader, in the order of the table.
+template <class Io, class What>
+void pass(Io& io, What& what) {
+  if constexpr (requires { what.id; }) io.channel(what.id);
+  if constexpr (requires { what.address; }) io.address(what.address);
+  if constexpr (requires { what.dest; }) io.address(what.dest);
+  if constexpr (requires { what.src; }) io.address(what.src);
+  if constexpr (requires { what.peer; }) io.address(what.peer);
+  if constexpr (requires { what.descriptor; }) {
+    io.number(what.descriptor.mote_type);
+    io.number(what.descriptor.transducers);
+    io.number(what.descriptor.actuators);
   }
-  Message operator()(const machine::Send& c) const {
-    return Writer("send").address(c.dest).number(c.app_id).number(c.reliable).bytes(c.data).take();
-  }
-  Message operator()(const machine::SetInterface& c) const {
-    return Writer("interface").number(static_cast<int>(c.link)).number(c.on).take();
-  }
-  Message operator()(const machine::GetInterface& c) const {
-    return Writer("get_interface").number(static_cast<int>(c.link)).take();
-  }
-  Message operator()(const machine::CreateChannel& c) const {
-    const bool out = c.direction == machine::Direction::kOut;
-    return Writer(out ? "create_out" : "create_in")
-        .address(c.peer)
-        .number(c.size)
-        .number(static_cast<int>(c.mode))
-        .take();
-  }
-  Message operator()(const machine::DisposeChannel& c) const {
-    return Writer("dispose").channel(c.id).take();
-  }
-  Message operator()(const machine::StartChannel& c) const {
-    return Writer("start").channel(c.id).take();
-  }
-  Message operator()(const machine::StopChannel& c) const {
-    return Writer("stop").channel(c.id).take();
-  }
-  Message operator()(const machine::StartAllChannels&) const { return Writer("start_all").take(); }
-  Message operator()(const machine::StopAllChannels&) const { return Writer("stop_all").take(); }
-  Message operator()(const machine::WriteOutput& c) const {
-    return Writer("write_output").channel(c.id).number(c.pos).real(c.value).take();
-  }
-  Message operator()(const machine::ReadInput& c) const {
-    return Writer("read_input").channel(c.id).number(c.pos).take();
-  }
-  Message operator()(const machine::SetTimeStep& c) const {
-    return Writer("set_time_step").number(c.ticks).take();
-  }
-  Message operator()(const machine::SetIslandId& c) const {
-    return Writer("set_island_id").number(c.island).take();
-  }
-  Message operator()(const machine::GetClock&) const { return Writer("get_clock").take(); }
-};
-
-struct NoticeWriter {
-  Message operator()(const machine::Joined& n) const {
-    return Writer("joined").address(n.address).number(n.success).take();
-  }
-  Message operator()(const machine::MoteJoined& n) const {
-    return Writer("mote_joined").address(n.address).descriptor(n.descriptor).take();
-  }
-  Message operator()(const machine::MoteLeft& n) const {
-    return Writer("mote_left").address(n.address).take();
-  }
-  Message operator()(const machine::SendResult& n) const {
-    return Writer("send_result").number(n.seq_num).take();
-  }
-  Message operator()(const machine::Received& n) const {
-    return Writer("received").address(n.src).number(n.app_id).bytes(n.data).take();
-  }
-  Message operator()(const machine::AckReceived& n) const {
-    return Writer("ack_received").number(n.app_id).number(n.seq_num).number(n.success).take();
-  }
-  Message operator()(const machine::SynDataReceived& n) const {
-    return Writer("syn_data").channel(n.id).number(static_cast<int>(n.status)).take();
-  }
-  Message operator()(const machine::ChannelResult& n) const {
-    return Writer("channel_result").channel(n.id).number(n.success).take();
-  }
-  Message operator()(const machine::OperationResult& n) const {
-    return Writer("op_result").number(n.success).take();
-  }
-  Message operator()(const machine::InputValue& n) const {
-    return Writer("input_value").real(n.value).number(n.success).take();
-  }
-  Message operator()(const machine::InterfaceState& n) const {
-    return Writer("interface_state").number(static_cast<int>(n.link)).number(n.on).take();
-  }
-  Message operator()(const machine::Clock& n) const { return Writer("clock").number(n.ms).take(); }
-};
-
-machine::CreateChannel create(Reader& in, machine::Direction direction) {
-  machine::CreateChannel out;
-  out.direction = direction;
-  out.peer = in.address();
-  out.size = in.number<std::uint8_t>();
-  out.mode = in.number<machine::Mode>();
-  return out;
+  if constexpr (requires { what.app_id; }) io.number(what.app_id);
+  if constexpr (requires { what.reliable; }) io.number(what.reliable);
+  if constexpr (requires { what.data; }) io.bytes(what.data);
+  if constexpr (requires { what.seq_num; }) io.number(what.seq_num);
+  if constexpr (requires { what.link; }) io.number(what.link);
+  if constexpr (requires { what.on; }) io.number(what.on);
+  if constexpr (requires { what.size; }) io.number(what.size);
+  if constexpr (requires { what.mode; }) io.number(what.mode);
+  if constexpr (requires { what.pos; }) io.number(what.pos);
+  if constexpr (requires { what.value; }) io.real(what.value);
+  if constexpr (requires { what.ticks; }) io.number(what.ticks);
+  if constexpr (requires { what.island; }) io.number(what.island);
+  if constexpr (requires { what.ms; }) io.number(what.ms);
+  if constexpr (requires { what.status; }) io.number(what.status);
+  if constexpr (requires { what.success; }) io.number(what.success);
 }
 
-std::optional<machine::Call> read_call(Reader& in) {
-  if (in.named("join")) return machine::JoinIsland{in.descriptor()};
-  if (in.named("send")) {
-    machine::Send out;
-    out.dest = in.address();
-    out.app_id = in.number<std::uint8_t>();
-    out.reliable = in.number<std::uint8_t>() != 0;
-    out.data = in.bytes();
-    return out;
-  }
-  if (in.named("interface")) {
-    const auto link = in.number<machine::Link>();
-    return machine::SetInterface{link, in.number<std::uint8_t>() != 0};
-  }
-  if (in.named("get_interface")) return machine::GetInterface{in.number<machine::Link>()};
-  if (in.named("create_out")) return create(in, machine::Direction::kOut);
-  if (in.named("create_in")) return create(in, machine::Direction::kIn);
-  if (in.named("dispose")) return machine::DisposeChannel{in.channel()};
-  if (in.named("start")) return machine::StartChannel{in.channel()};
-  if (in.named("stop")) return machine::StopChannel{in.channel()};
-  if (in.named("start_all")) return machine::StartAllChannels{};
-  if (in.named("stop_all")) return machine::StopAllChannels{};
-  if (in.named("write_output")) {
-    machine::WriteOutput out;
-    out.id = in.channel();
-    out.pos = in.number<std::uint8_t>();
-    out.value = in.real();
-    return out;
-  }
-  if (in.named("read_input")) {
-    const machine::ChannelId id = in.channel();
-    return machine::ReadInput{id, in.number<std::uint8_t>()};
-  }
-  if (in.named("set_time_step")) return machine::SetTimeStep{in.number<std::uint16_t>()};
-  if (in.named("set_island_id")) return machine::SetIslandId{in.number<std::uint16_t>()};
-  if (in.named("get_clock")) return machine::GetClock{};
-  return std::nullopt;
+// Names in the order of the variants.
+constexpr const char* kCalls[] = {"join",          "send",          "interface",    "get_interface",
+                                  "create_out",    "dispose",       "start",        "stop",
+                                  "start_all",     "stop_all",      "write_output", "read_input",
+                                  "set_time_step", "set_island_id", "get_clock"};
+constexpr const char* kCreateIn = "create_in";
+constexpr const char* kNotices[] = {
+    "joined",   "mote_joined",    "mote_left", "send_result", "received",        "ack_received",
+    "syn_data", "channel_result", "op_result", "input_value", "interface_state", "clock"};
+
+template <class Variant>
+Message written(const Variant& variant, const char* name) {
+  Writer out(name);
+  std::visit([&](const auto& one) { pass(out, one); }, variant);
+  return out.take();
 }
 
-std::optional<machine::Notice> read_notice(Reader& in) {
-  if (in.named("joined")) {
-    const Address address = in.address();
-    return machine::Joined{address, in.number<std::uint8_t>() != 0};
-  }
-  if (in.named("mote_joined")) {
-    const Address address = in.address();
-    return machine::MoteJoined{address, in.descriptor()};
-  }
-  if (in.named("mote_left")) return machine::MoteLeft{in.address()};
-  if (in.named("send_result")) return machine::SendResult{in.number<std::uint16_t>()};
-  if (in.named("received")) {
-    machine::Received out;
-    out.src = in.address();
-    out.app_id = in.number<std::uint8_t>();
-    out.data = in.bytes();
+template <class Variant, std::size_t kIndex = 0, std::size_t kNames>
+std::optional<Variant> read_as(Reader& in, const char* const (&names)[kNames]) {
+  static_assert(kNames == std::variant_size_v<Variant>);
+  if constexpr (kIndex < kNames) {
+    if (!in.named(names[kIndex])) return read_as<Variant, kIndex + 1>(in, names);
+    std::variant_alternative_t<kIndex, Variant> out{};
+    pass(in, out);
     return out;
+  } else {
+    return std::nullopt;
   }
-  if (in.named("ack_received")) {
-    machine::AckReceived out;
-    out.app_id = in.number<std::uint8_t>();
-    out.seq_num = in.number<std::uint16_t>();
-    out.success = in.number<std::uint8_t>() != 0;
-    return out;
-  }
-  if (in.named("syn_data")) {
-    const machine::ChannelId id = in.channel();
-    return machine::SynDataReceived{id, in.number<machine::DataStatus>()};
-  }
-  if (in.named("channel_result")) {
-    const machine::ChannelId id = in.channel();
-    return machine::ChannelResult{id, in.number<std::uint8_t>() != 0};
-  }
-  if (in.named("op_result")) return machine::OperationResult{in.number<std::uint8_t>() != 0};
-  if (in.named("input_value")) {
-    const float value = in.real();
-    return machine::InputValue{value, in.number<std::uint8_t>() != 0};
-  }
-  if (in.named("interface_state")) {
-    const auto link = in.number<machine::Link>();
-    return machine::InterfaceState{link, in.number<std::uint8_t>() != 0};
-  }
-  if (in.named("clock")) return machine::Clock{in.number<std::uint32_t>()};
-  return std::nullopt;
 }
 
 }  // namespace
@@ -434,17 +312,27 @@ void state(machine::Profile& profile, const trace::Statement& statement) {
   }
 }
 
-Message from_call(const machine::Call& call) { return std::visit(CallWriter{}, call); }
-Message from_notice(const machine::Notice& notice) { return std::visit(NoticeWriter{}, notice); }
+Message from_call(const machine::Call& call) {
+  const auto* create = std::get_if<machine::CreateChannel>(&call);
+  const bool in = create && create->direction == machine::Direction::kIn;
+  return written(call, in ? kCreateIn : kCalls[call.index()]);
+}
+Message from_notice(const machine::Notice& notice) {
+  return written(notice, kNotices[notice.index()]);
+}
 
 std::optional<machine::Call> to_call(const Concrete& message) {
   Reader in(message);
-  return read_call(in);
+  if (!in.named(kCreateIn)) return read_as<machine::Call>(in, kCalls);
+  machine::CreateChannel out;
+  out.direction = machine::Direction::kIn;
+  pass(in, out);
+  return out;
 }
 
 std::optional<machine::Notice> to_notice(const Concrete& message) {
   Reader in(message);
-  return read_notice(in);
+  return read_as<machine::Notice>(in, kNotices);
 }
 
 std::optional<machine::Event> to_state(const Concrete& message, trace::LinkKind kind) {
@@ -455,7 +343,9 @@ std::optional<machine::Event> to_state(const Concrete& message, trace::LinkKind 
     if (link) return machine::LinkBusy{*link, busy};
     if (kind == trace::LinkKind::kApp) return machine::AppBusy{busy};
   } else if (in.named("linkack") && link) {
-    return machine::SendDone{*link, in.number<std::uint8_t>() != 0};
+    machine::SendDone done{*link, false};
+    in.number(done.acked);
+    return done;
   } else if (in.named("reboot")) {
     return machine::Reboot{};
   } else if (in.named("off")) {

@@ -129,6 +129,12 @@ class Layout {
                    "a number was expected; .to_i makes one of an enum");
       return false;
     }
+    if (expr->range.max < 0) {
+      check_.error(expr->place,
+                   fmt::format("the {} {} is always negative", what, quote(to_text(*expr))),
+                   "a field has bytes");
+      return false;
+    }
     if (expr->range.min < 0) {
       expr->range.max = std::max<std::int64_t>(expr->range.max, 0);
       return check_.unproved(expr->place,
@@ -186,6 +192,12 @@ class Layout {
     if (field.extent == ExtentKind::kToEnd) size.max = kUnbounded;
     if (field.extent == ExtentKind::kTerminated) {
       size = {field.text->may_lack_its_end ? 0U : 1U, kUnbounded};
+    }
+    if (field.repeat != RepeatKind::kOnce && size.max == 0) {
+      check_.error(place_of(field.places, "repeat", field.place),
+                   fmt::format("{} repeats what takes no byte", quote(field.id)),
+                   "an element of a byte or more was expected");
+      is_open_ = true;
     }
     if (field.repeat == RepeatKind::kCount) {
       const Interval count{std::max<std::int64_t>(field.count->range.min, 0),

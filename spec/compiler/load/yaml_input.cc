@@ -78,7 +78,12 @@ std::optional<YAML::Node> parse_yaml(const std::string& file, const std::string&
                                      Diagnostics& diagnostics) {
   if (!is_plain_text(file, text, diagnostics)) return std::nullopt;
   try {
-    return YAML::Load(text);
+    // The parser takes what follows a list or a mapping without fitting it for another document.
+    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
+    if (documents.size() < 2) return documents.empty() ? YAML::Node() : documents.front();
+    const YAML::Mark second = documents[1].Mark();
+    diagnostics.error({file, second.line + 1, second.column + 1}, "what is here belongs to nothing",
+                      "one document was expected");
   } catch (const YAML::Exception& e) {
     diagnostics.error({file, e.mark.line + 1, e.mark.column + 1}, "not YAML: " + e.msg);
   }

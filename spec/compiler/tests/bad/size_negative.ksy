@@ -1,5 +1,4 @@
-# expect: 14:17: the size 'n - 3' can be negative; it is -1 to 252; 'valid' can narrow what it is
-#   made of
+# expect: 9:23: the size '-1' is always negative; a field has bytes
 meta:
   id: bad
   endian: be
@@ -7,8 +6,4 @@ types:
   one:
     -requirement: WIRE-DATA
     seq:
-      - id: n
-        type: u1
-        valid: {min: 2}
-      - id: b
-        size: n - 3
+      - {id: a, size: -1}
