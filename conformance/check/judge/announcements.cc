@@ -254,7 +254,8 @@ void Announcements::overdue_reports(SinkWatch& sink, std::int64_t end_us) {
                         machine::Link::kSerial) +
         (sink.behind ? kFrameUs : 0);
     const bool ahead = watch.admitted.time_us - watch.ahead_us <= context_.options.skew_us;
-    if (watch.report_due && now_us > due_us && !ahead) due.push_back(am);
+    const bool comes = now_us < watch.comes_us;
+    if (watch.report_due && now_us > due_us && !ahead && !comes) due.push_back(am);
   }
   std::sort(due.begin(), due.end(), [&](std::uint16_t a, std::uint16_t b) {
     return std::pair(sink.motes[a].admitted.time_us, a) <
@@ -280,7 +281,10 @@ void Announcements::overdue_reports(SinkWatch& sink, std::int64_t end_us) {
     };
     const Observation* const next =
         whole ? nullptr : context_.next(now_us, Context::kHeldLongUs, is_next);
-    if (next != nullptr && is_report(*next)) continue;
+    if (next != nullptr && is_report(*next)) {
+      watch.comes_us = next->place.time_us;
+      continue;
+    }
     sink.set_due(watch, false);
     const auto owes = [](const SinkHypothesis& h) { return !h.unknown && h.owes_report; };
     if (!std::all_of(watch.set.begin(), watch.set.end(), owes)) continue;
