@@ -82,11 +82,12 @@ TextLines look_at_lines(Bytes sample) {
       continue;
     }
     const Error error = decode_hex_line(line, bytes);
-    // The sample may end within a byte of its last line.
-    if (error.fault != Fault::kNone && (whole || error.offset_bytes < line.size())) {
+    // A line may be cut within a byte, and the sample may end there.
+    const bool cut = error.fault != Fault::kNone && error.offset_bytes >= line.size();
+    if (error.fault != Fault::kNone && !cut) {
       found.others = true;
       found.noise = found.noise && is_noise(line);
-    } else {
+    } else if (!cut || !whole) {
       const bool comment = std::find(line.begin(), line.end(), '#') != line.end();
       found.hex = found.hex || !bytes.empty() || comment;
       found.packets = found.packets || bytes.size() >= kPacketLineBytes;

@@ -192,6 +192,19 @@ TEST(WireHex, WordsAndNumbersOfALogAreNoPackets) {
   EXPECT_EQ(reader->noise().lines, 5u);
 }
 
+TEST(WireHex, ALineThatIsCutHidesNoOthers) {
+  const std::string packet = "00 ff ff 00 00 04 22 06 00 02 00 01\n";
+  const std::string text = packet + "00 ff ff 0\n" + packet;
+  EXPECT_EQ(detect(view(text)), InputFormat::kHex);
+  const std::vector<Kept> got = read_all(*make_reader(InputFormat::kHex), view(text));
+  ASSERT_EQ(got.size(), 3u);
+  EXPECT_EQ(got[0].packet.error, kSound);
+  EXPECT_EQ(got[1].packet.error.fault, Fault::kUnexpected);
+  EXPECT_EQ(got[1].packet.line, 2u);
+  EXPECT_EQ(got[2].packet.error, kSound);
+  EXPECT_EQ(detect(view(std::string("add\nbad\n"))), InputFormat::kUnknown);
+}
+
 TEST(WireHex, HexTextAfterAnUnknownPrefixIsTold) {
   const std::string packet = "00 ff ff 00 00 04 22 06 00 02 00 01\n";
   const auto reader = make_reader(InputFormat::kLog);

@@ -468,7 +468,7 @@ void Acks::missing_ack(std::uint16_t node, Arrived& arrived, std::int64_t now_us
   context_.report("T2-ACK"_rule, context_.on_line(node, severity), arrived.place, node,
                   {"It surely received " + name_of(arrived.net) +
                        ", reliable, and sent no ack within " + ms_text(context_.response_us(node)) +
-                       (lives ? ", though it sent other frames later." : "."),
+                       (lives && !device.hearing ? ", though it sent other frames later." : "."),
                    "An ack.",
                    {}});
 }

@@ -347,13 +347,15 @@ void Forwarding::overdue_down(Line& line, std::int64_t now_us) {
     const Severity severity =
         open ? Severity::kInconclusive : context_.without(line.sink, passing.place.time_us, now_us);
     const Severity its = context_.on_line(line.sink, severity);
+    const bool log = context_.device(line.sink).hearing;
+    const std::string proof = log            ? "The sink was given "
+                              : passing.sure ? "The sink confirmed "
+                                             : "Nothing proves that the sink took ";
     context_.report(passing.cut ? "N11-SHORT"_rule : "N7-RADIO"_rule,
                     passing.cut && its == Severity::kFail ? Severity::kWeak : its, passing.place,
                     line.sink,
-                    {(passing.sure ? "The sink confirmed " : "Nothing proves that the sink took ") +
-                         name_of(passing.net) +
-                         " on its serial line and did not radiate it, though it sent other frames "
-                         "later.",
+                    {proof + name_of(passing.net) + " on its serial line and did not radiate it" +
+                         (log ? "." : ", though it sent other frames later."),
                      "A radio frame to " + number(passing.am_dest) + " within " +
                          ms_text(context_.response_us(line.sink)) + ".",
                      {}});

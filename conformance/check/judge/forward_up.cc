@@ -276,6 +276,7 @@ void Forwarding::overdue_up(Line& line, std::int64_t now_us) {
     passing.owed = false;
     --line.up.owed;
     const bool own_island = passing.net.dest.pid == line.island;
+    const bool log = context_.device(line.sink).hearing;
     context_.report(
         own_island ? "N6-FORWARD"_rule : "N6-ROUTE"_rule,
         crowded(line, passing, Link::kSerial) || context_.who.damaged(passing.place.time_us, now_us)
@@ -283,8 +284,8 @@ void Forwarding::overdue_up(Line& line, std::int64_t now_us) {
             : context_.on_line(line.sink, Severity::kFail),
         passing.place, line.sink,
         {"The sink received " + name_of(passing.net) + " (" +
-             (context_.device(line.sink).hearing ? "by its log" : "the link acknowledged it") +
-             ") and did not put it on its serial line, though more came later.",
+             (log ? "by its log" : "the link acknowledged it") +
+             ") and did not put it on its serial line" + (log ? "." : ", though more came later."),
          "A forward within " + ms_text(context_.response_us(line.sink)) + ".",
          {}});
   }
