@@ -262,8 +262,8 @@ bool looks_like_trace(std::string_view bytes) {
 bool read_trace(const std::string& name, std::string_view text, Run& run, std::string& error) {
   trace::Parsed parsed = trace::parse(text, name);
   const std::size_t last_line = text.rfind('\n') + 1;
-  if (!parsed.ok() &&
-      last_line != text.size()) {  // Its writer may have been stopped within a line.
+  // Its writer may have been stopped within a line.
+  if (!parsed.ok() && last_line != text.size()) {
     trace::Parsed whole_lines = trace::parse(text.substr(0, last_line), name);
     const bool cut = whole_lines.ok() && !whole_lines.file.cases.empty();
     run.cut = run.cut || cut;
