@@ -226,8 +226,8 @@ void JoinCalls::told(std::uint16_t mote, const Observation& seen, const machine:
     set = before;
     return;
   }
-  // A call while joined asks nobody, and FAIL is right at once (J8-JOINED). A call while another one
-  // runs may fail at once or later.
+  // A call while joined asks nobody, and FAIL is right at once (J8-JOINED). A call while another
+  // one runs may fail at once or later.
   const bool waited = std::exchange(calls.waits, false);
   const bool asks = calls.asked && calls.asked_at.time_us >= calls.called.time_us;
   const bool refused = waited || (calls.last && calls.refusable && !asks &&
