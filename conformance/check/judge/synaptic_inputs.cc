@@ -1,5 +1,8 @@
 // Judges input channels: the data that come for them, and synData_received.
+#include <fmt/core.h>
+
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -88,7 +91,69 @@ void SynapticWatch::judge_untold(std::uint16_t device, std::int64_t now_us) {
   });
 }
 
-// The value that read_input_value tells is not judged: data may have been lost or be on their way.
+// Returns whether a value of `time_us` at `pos` was surely overwritten by data that came later, and
+// that were taken before `until_us`.
+bool SynapticWatch::overwritten(std::uint16_t device, const In& in, std::int64_t time_us,
+                                std::size_t pos, std::int64_t until_us) const {
+  return std::ranges::any_of(in.came, [&](const In::Came& later) {
+    return later.sure && pos < later.bits.size() &&
+           later.time_us > context_.due_us(device, time_us) &&
+           context_.due_us(device, later.time_us) < until_us;
+  });
+}
+
+// Keeps the values of data that came for a channel that runs.
+void SynapticWatch::keep_values(std::uint16_t device, In& in, const Observation& seen,
+                                const Net& net, bool sure) {
+  using Values = rubicon::SynapticDataLayout::ValuesAt;
+  const std::int64_t now = seen.place.time_us;
+  const std::vector<Wanted>& wanted = nodes_[device].wanted;
+  const std::int64_t called_us = wanted.empty() ? now : wanted.front().called.time_us;
+  while (!in.came.empty() && overwritten(device, in, in.came.front().time_us,
+                                         in.came.front().bits.size() - 1, called_us)) {
+    in.came.erase(in.came.begin());
+  }
+  if (in.came.size() == kOldsMax) in.forget(now);
+  const std::size_t count = std::min<std::size_t>(in.size, net.body().size() / Values::kUnitBytes);
+  if (count == 0) return;
+  // A copy of what came before, or what was overtaken, may be left out.
+  const bool next =
+      in.came.empty() || static_cast<std::int16_t>(net.seq_num - in.came.back().seq_num) > 0;
+  In::Came& came = in.came.emplace_back();
+  came = {now, net.seq_num, sure && next && !context_.crowded(device, now), {}};
+  for (std::size_t i = 0; i < count; ++i) {
+    came.bits.push_back(bits_of_float(Values::load(net.body().data(), i)));
+  }
+}
+
+// Judges the value that read_input_value tells: one that came, and that no later one overwrote.
+void SynapticWatch::judge_value(std::uint16_t device, const Observation& seen, const Wanted& wanted,
+                                float value) {
+  Node& node = nodes_[device];
+  const In* const in = find_in(node, wanted.read->id);
+  const std::size_t pos = wanted.read->pos;
+  const std::int64_t called_us = wanted.called.time_us;
+  if (in == nullptr || in->local || is_twin(node, in->id)) return;
+  if (!overwritten(device, *in, in->unknown_us, pos, called_us)) return;
+  const In::Came* last = nullptr;
+  for (const In::Came& came : in->came) {
+    if (pos >= came.bits.size() || overwritten(device, *in, came.time_us, pos, called_us)) continue;
+    const float held = float_of_bits(came.bits[pos]);
+    if (held == value || std::isnan(held)) return context_.findings.kept("S1-READ"_rule);
+    last = &came;
+  }
+  if (last == nullptr) return;
+  const auto text = [](float one) { return fmt::format("{}", one); };
+  context_.report(
+      "S1-READ"_rule, Severity::kFail, seen.place, device,
+      {"read_input_value tells " + text(value) + " for connection " + number(pos) +
+           " of the channel from " + number(in->id >> 16) + " to " + number(in->id & 0xFFFF) +
+           ". The data that came " + ms_text(called_us - last->time_us) + " before the call hold " +
+           text(float_of_bits(last->bits[pos])) + ".",
+       "The value that was received last.",
+       {}});
+}
+
 void SynapticWatch::told(std::uint16_t device, const Observation& seen,
                          const machine::Notice& result) {
   Node& node = nodes_[device];
@@ -117,6 +182,9 @@ void SynapticWatch::told(std::uint16_t device, const Observation& seen,
   const bool both = *succeeds(want) && *succeeds(result);
   const bool other = both && made != nullptr && made->id != right->id;
   const bool refusable = !*succeeds(want) && *succeeds(result);
+  if (const auto* read = std::get_if<machine::InputValue>(&result); both && read != nullptr) {
+    return judge_value(device, seen, wanted, read->value);
+  }
   if (!other && !refusable) return;
   const auto name = [](machine::ChannelId id) {
     return number(id >> 16) + "->" + number(id & 0xFFFF);
@@ -147,6 +215,8 @@ void SynapticWatch::note_inputs(Node& node, const machine::Synaptic& before, std
     if (in == nullptr) continue;
     in->peer = channel.peer;
     in->local = is_local(node, channel);
+    if (in->size != channel.size) in->forget(now_us);
+    in->size = channel.size;
   }
   for (In& in : node.ins) {
     const bool ran = started(before, in.id);
@@ -156,6 +226,7 @@ void SynapticWatch::note_inputs(Node& node, const machine::Synaptic& before, std
     in.ended_us = runs ? -1 : now_us;
     in.told_us = -1;
     in.ticks = {};
+    in.forget(now_us);
   }
 }
 
@@ -183,6 +254,7 @@ void SynapticWatch::given(std::uint16_t device, const Observation& seen, const N
   const bool from_peer = in->peer.pid == machine::kLocalPid ? its : net.src == in->peer;
   in->data_sure[at] = sure && from_peer;
   in->data_its[at] = from_peer || is_twin(node, in->id);
+  if (context_.device(device).whole) keep_values(device, *in, seen, net, in->data_sure[at]);
 }
 
 void SynapticWatch::heard(std::uint16_t device, const Observation& seen, const Net& net) {

@@ -85,6 +85,9 @@ void SynapticWatch::called(std::uint16_t device, const Observation& seen, machin
   for (const machine::Action& action : context_.actions.all()) {
     if (action.what != machine::Action::What::kNotify) continue;
     node.wanted.push_back({context_.actions.notice_of(action), action.requirement, seen.place});
+    if (const auto* read = std::get_if<machine::ReadInput>(seen.call)) {
+      node.wanted.back().read = *read;
+    }
   }
   if (const auto* create = std::get_if<machine::CreateChannel>(seen.call)) {
     const machine::ChannelId id = machine::channel_id(create->peer.devid, config.id);

@@ -89,6 +89,20 @@ class SynapticWatch {
     std::uint8_t data_next = 0;
     bool before = false;  ///< Data came while it did not run; it may count, or not.
     Ticks ticks;
+    /// Data that came, oldest first, without those that surely were overwritten.
+    struct Came {
+      std::int64_t time_us = 0;
+      std::uint16_t seq_num = 0;
+      bool sure = false;  ///< They surely came in, and from its peer.
+      std::vector<std::uint32_t> bits;
+    };
+    std::vector<Came> came;
+    std::int64_t unknown_us = 0;  ///< What the channel held then is not known.
+    std::uint8_t size = 0;
+    void forget(std::int64_t now_us) {
+      came.clear();
+      unknown_us = now_us;
+    }
   };
   /// Data for a channel that does not exist, which the application was not told of yet.
   struct Unknown {
@@ -108,6 +122,7 @@ class SynapticWatch {
     machine::Notice result;
     ReqId rule = ReqId::kNone;
     Place called;
+    std::optional<machine::ReadInput> read{};
   };
   /// What a call that is refused after all has not changed.
   struct Former {
@@ -148,6 +163,12 @@ class SynapticWatch {
   static bool is_twin(const Node& node, machine::ChannelId id);
   static bool may_be_local(machine::ChannelId id);
   void refused(std::uint16_t device, const Observation& seen, const Wanted& wanted);
+  bool overwritten(std::uint16_t device, const In& in, std::int64_t time_us, std::size_t pos,
+                   std::int64_t until_us) const;
+  void keep_values(std::uint16_t device, In& in, const Observation& seen, const Net& net,
+                   bool sure);
+  void judge_value(std::uint16_t device, const Observation& seen, const Wanted& wanted,
+                   float value);
   void judge_untold(std::uint16_t device, std::int64_t now_us);
   void told_of_unknown(std::uint16_t device, const Observation& seen, machine::ChannelId id);
   void told_of_nothing(std::uint16_t device, const Observation& seen, machine::ChannelId id);

@@ -101,6 +101,35 @@ TEST(SynapticTicks, EachTickSignals) {
   EXPECT_EQ(all(in(sink(300, "< app stop(channel=2->1)") + told(600, "old"))), "S6-STOPPED");
 }
 
+TEST(SynapticTicks, AReadTellsWhatCameLast) {
+  const auto came = [](int ms, int seq, const std::string& value) {
+    const std::string frame =
+        "rA am=2->1 net_msg(dest=11:1 src=11:2 reliable=0 seq_num=" + digit(seq) +
+        " payload.trans_id=syn_channel payload.app_id=learning " + "payload.body.values=[" + value +
+        "])";
+    return m2(ms, "> " + frame) + sink(ms + 3, "< " + frame);
+  };
+  const auto read = [](int ms, const std::string& value) {
+    return sink(ms, "< app read_input(channel=2->1 pos=0)") +
+           sink(ms + 1, "> app input_value(value=" + value + " result=success)");
+  };
+  const std::string two = out("reliable") + in(came(640, 1, "1.5") + told(700, "new") +
+                                               came(1140, 2, "2.5") + told(1190, "new"));
+  EXPECT_EQ(all(two + read(800, "1.5") + read(1160, "1.5") + read(1500, "2.5")), "");
+  EXPECT_EQ(all(two + read(1160, "2.5")), "") << "It is taken at once.";
+  EXPECT_EQ(all(two + read(400, "7")), "") << "Before any came it is free.";
+  EXPECT_EQ(all(two + read(800, "7")), "S1-READ") << "It never came.";
+  EXPECT_EQ(all(two + read(1500, "1.5")), "S1-READ") << "It was overwritten.";
+  const std::string again =
+      sink(1200, "< app stop(channel=2->1)") + sink(1210, "< app start(channel=2->1)");
+  EXPECT_EQ(all(two + again + read(1500, "0")), "") << "A start may forget what came before.";
+  const std::string copy = sink(1145,
+                                "< rA am=2->1 net_msg(dest=11:1 src=11:2 reliable=0 "
+                                "seq_num=1 payload.trans_id=syn_channel "
+                                "payload.app_id=learning payload.body.values=[1.5])");
+  EXPECT_EQ(all(two + copy + read(1500, "2.5")), "") << "An old frame that came again.";
+}
+
 TEST(SynapticTicks, TheStatusSaysWhetherDataCame) {
   const std::string sends = out("reliable");
   EXPECT_EQ(all(sends + in(to_sink(640, 1) + told(700, "new") + told(1190, "old"))), "");
