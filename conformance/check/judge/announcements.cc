@@ -55,7 +55,10 @@ void Announcements::announce(SinkWatch& sink, const Place& at, machine::Address 
   const ReqId content = notice ? "J6-ADD"_rule : "J6-CONTENT"_rule;
   const bool astray =
       address.pid != sink.island && !joins_.keeps_former(sink, address.pid, at, watch.ack.time_us);
-  if (astray) {
+  // The host of a line that is only half heard may have set another island.
+  const bool told = astray && context_.half_heard(sink.device);
+  if (told) context_.needs_host(sink.device, at);
+  if (astray && !told) {
     const ReqId rule = SinkJoins::wrong_island(sink, address.pid, content);
     // SET_ISLAND_ID may have escaped, or found the line switched off.
     const Severity severity = sink.island_sure ? Severity::kFail : Severity::kInconclusive;

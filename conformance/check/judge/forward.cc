@@ -246,9 +246,12 @@ void Forwarding::overdue(std::uint16_t sink, std::int64_t now_us) {
   if (line->down.owed > 0) overdue_down(*line, now_us);
 }
 
-void Forwarding::showed_life(std::uint16_t sink, std::int64_t now_us) {
+void Forwarding::showed_life(std::uint16_t sink, const Observation& seen) {
   Line* const line = find(sink);
-  if (line != nullptr && line->down.owed > 0) overdue_down(*line, now_us);
+  if (line == nullptr) return;
+  const bool radio = seen.kind == Observation::Kind::kRadio;
+  (radio ? line->on_air : line->on_line) = seen.place;
+  if (radio && line->down.owed > 0) overdue_down(*line, seen.place.time_us);
 }
 
 // Returns whether a message was made of one that came: it has its source and number, or, while that
@@ -332,7 +335,7 @@ void Forwarding::refuse_down(Line& line, const Observation& seen, const Net& net
   if (best->passed < 255) ++best->passed;
 }
 
-void Forwarding::overdue_down(Line& line, std::int64_t now_us) {
+void Forwarding::overdue_down(Line& line, std::int64_t now_us, Severity most) {
   if (now_us < 0) return;
   for (std::size_t i = 0; i < line.down.size(); ++i) {
     Passing& passing = line.down.oldest(i);
@@ -346,7 +349,7 @@ void Forwarding::overdue_down(Line& line, std::int64_t now_us) {
     const bool open = !passing.sure || elsewhere || crowded(line, passing, Link::kRadio);
     const Severity severity =
         open ? Severity::kInconclusive : context_.without(line.sink, passing.place.time_us, now_us);
-    const Severity its = context_.on_line(line.sink, severity);
+    const Severity its = std::min(most, context_.on_line(line.sink, severity));
     const bool log = context_.device(line.sink).hearing;
     const std::string proof = log            ? "The sink was given "
                               : passing.sure ? "The sink confirmed "
@@ -369,6 +372,13 @@ void Forwarding::finish() {
     expire_early(line, end_us + context_.options.skew_us + 1);
     if (context_.device(line.sink).hearing && line.up.owed > 0) overdue_up(line, end_us);
     if (context_.device(line.sink).hearing && line.down.owed > 0) overdue_down(line, end_us);
+    // Life on the other line is one, too, if one recorder had both until the end.
+    const bool both = context_.options.sniffer_complete && line.on_air.file == line.on_line.file;
+    const Severity most = both ? Severity::kFail : Severity::kInconclusive;
+    if (line.up.owed > 0) overdue_up(line, line.on_air.time_us - context_.options.skew_us, most);
+    if (line.down.owed > 0) {
+      overdue_down(line, line.on_line.time_us - context_.options.skew_us, most);
+    }
     forwards_nothing(line);
     note_stale(context_, line.sink, "N6-CONTENT"_rule, line.stale,
                "On the serial line nbytes says ");

@@ -71,8 +71,8 @@ class Forwarding {
   /// Notes that its radio is switched on or off; while off, it owes nothing of what it hears there,
   /// or should send.
   void radio_set(std::uint16_t sink, bool on);
-  /// Notes that the sink sent something by radio, so what it should have radiated is overdue.
-  void showed_life(std::uint16_t sink, std::int64_t now_us);
+  /// Notes that the sink sent something; by radio, what it should have radiated is overdue.
+  void showed_life(std::uint16_t sink, const Observation& seen);
   /// Notes that one of the sinks, unknown which, sent this by radio.
   void somebody_sent(const Net& net);
   /// Notes that by a log the sink was given a message that its host sent before.
@@ -125,6 +125,8 @@ class Forwarding {
     };
     Last last_up;
     Last last_down;
+    Place on_air;                 ///< The last frame that it sent there.
+    Place on_line;                ///< And on its serial line.
     std::uint32_t heard = 0;      ///< Messages for its base station that it may have received.
     std::uint32_t forwarded = 0;  ///< Messages that it passed on to its base station.
     Stale stale;                  ///< On its serial line.
@@ -142,8 +144,8 @@ class Forwarding {
   bool resembles(const Line& line, const Passing& came, const Net& net) const;
   void refuse_down(Line& line, const Observation& seen, const Net& net);
   void expire_early(Line& line, std::int64_t now_us);
-  void overdue_up(Line& line, std::int64_t now_us);
-  void overdue_down(Line& line, std::int64_t now_us);
+  void overdue_up(Line& line, std::int64_t now_us, Severity most = Severity::kFail);
+  void overdue_down(Line& line, std::int64_t now_us, Severity most = Severity::kFail);
   bool crowded(const Line& line, const Passing& passing, machine::Link out) const;
   bool may_be_anothers(const Line& line, const Net& net);
   bool relayed(Line& line, const Observation& seen, const Net& net);

@@ -99,6 +99,10 @@ void Forwarding::pass_up(Line& line, Passing& passing, const Observation& seen) 
     Severity severity = passing.weak ? Severity::kWeak : Severity::kFail;
     if (!format) severity = context_.on_line(line.sink, severity);  // SET_ISLAND_ID may be missing.
     if (!format && !line.island_sure) severity = std::min(severity, Severity::kInconclusive);
+    const bool of_island = !format && passing.forbidden != "N10-OFF"_rule;
+    if (of_island && context_.half_heard(line.sink)) {
+      return context_.needs_host(line.sink, seen.place);
+    }
     context_.report(passing.forbidden, severity, seen.place, line.sink, std::move(said));
   } else {
     ++line.forwarded;
@@ -216,6 +220,10 @@ void Forwarding::unheard(Line& line, const Passing& early) {
                        passing.place.time_us <= early.place.time_us;
     if (waits && alike) meant = &passing;
   }
+  // Its own, if its host, of which nothing is heard, set another island.
+  if (meant == nullptr && early.net.src.devid == line.am && context_.half_heard(line.sink)) {
+    return context_.needs_host(line.sink, early.place);
+  }
   const bool began =
       context_.options.start_cold || early.place.time_us - context_.run.start_us > kStartUs;
   // A damaged frame may have been what it forwards.
@@ -267,7 +275,7 @@ bool Forwarding::came_up(std::uint16_t sink, const Net& net) {
 }
 
 // Reports what was surely received and is missing though the sink has shown life long after.
-void Forwarding::overdue_up(Line& line, std::int64_t now_us) {
+void Forwarding::overdue_up(Line& line, std::int64_t now_us, Severity most) {
   if (now_us < 0) return;
   for (std::size_t i = 0; i < line.up.size(); ++i) {
     Passing& passing = line.up.oldest(i);
@@ -281,11 +289,12 @@ void Forwarding::overdue_up(Line& line, std::int64_t now_us) {
         own_island ? "N6-FORWARD"_rule : "N6-ROUTE"_rule,
         crowded(line, passing, Link::kSerial) || context_.who.damaged(passing.place.time_us, now_us)
             ? Severity::kInconclusive
-            : context_.on_line(line.sink, Severity::kFail),
+            : std::min(most, context_.on_line(line.sink, Severity::kFail)),
         passing.place, line.sink,
         {"The sink received " + name_of(passing.net) + " (" +
              (log ? "by its log" : "the link acknowledged it") +
-             ") and did not put it on its serial line" + (log ? "." : ", though more came later."),
+             ") and did not put it on its serial line" +
+             (log ? "." : ", though it sent other frames later."),
          "A forward within " + ms_text(context_.response_us(line.sink)) + ".",
          {}});
   }

@@ -69,9 +69,7 @@ void Judge::look(std::uint32_t index) {
       if (mark.device == kNobody) break;
       on_air_us_[mark.device] = seen.place.time_us;
       joins_.showed_life(mark.device, seen.place.time_us);
-      if (is(mark.device, Role::kSink)) {
-        forwarding_.showed_life(mark.device, seen.place.time_us);
-      }
+      forwarding_.showed_life(mark.device, seen);
       if (!seen.received) interfaces_.sent(mark.device, seen);
       break;
     case Kind::kSerial:
@@ -79,6 +77,7 @@ void Judge::look(std::uint32_t index) {
       if (mark.repeat) return repeated(index, seen, mark);
       if (mark.device == kNobody) break;
       serial(index, seen, mark);
+      if (!seen.to_mote) forwarding_.showed_life(mark.device, seen);
       if (!seen.received) interfaces_.sent(mark.device, seen);
       break;
     case Kind::kPeis:
@@ -432,7 +431,7 @@ void Judge::radio_net(std::uint32_t index, const Observation& seen, const Mark& 
     hears(sink, {Role::kSink, {sinks_.island(sink), am}, true, context_.sink_am},
           machine::Link::kRadio, seen, sender, net, sure == sink || mark.receiver == sink);
   }
-  if (net.is_ack()) ack_comes(net, seen, mark.receiver);
+  if (net.is_ack()) ack_comes(index, net, seen, mark.receiver);
 }
 
 // Takes a message of the node's own.
@@ -505,7 +504,7 @@ void Judge::serial(std::uint32_t index, const Observation& seen, const Mark& mar
     up_serial(seen, mark, sink, net, passes);
     if (!whole_log) announcements_.showed_life(sink, seen.place.time_us);
   }
-  if (net.is_ack()) ack_comes(net, seen, mark.receiver);
+  if (net.is_ack()) ack_comes(index, net, seen, mark.receiver);
 }
 
 void Judge::whole(const Observation& seen, std::uint16_t sender) {
@@ -581,7 +580,7 @@ void Judge::peis(const Observation& seen, std::uint16_t base) {
         kNobody, net, true);
   const std::int32_t acked = net.is_ack() ? machine::acked_seq_num(net.body()) : -1;
   if (acked < 0 || net.dest != own) return;
-  originals_.ack_heard(base, net, static_cast<std::uint16_t>(acked));
+  originals_.ack_heard(base, net, static_cast<std::uint16_t>(acked), Wait::kOver);
   originals_.ack_given(base, net, seen.place.time_us);
 }
 

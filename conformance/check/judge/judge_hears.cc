@@ -149,7 +149,8 @@ std::int64_t Judge::ack_timeout_us(machine::Address address) const {
   return longest_us >= 0 ? longest_us : context_.ack_timeout_us(kNobody);
 }
 
-void Judge::ack_comes(const Net& ack, const Observation& seen, std::uint16_t given) {
+void Judge::ack_comes(std::uint32_t index, const Net& ack, const Observation& seen,
+                      std::uint16_t given) {
   if (given != kNobody && interfaces_.switched_off(given, seen.frame.link)) return;
   if (given != kNobody) originals_.ack_given(given, ack, seen.place.time_us);
   const std::int32_t acked = machine::acked_seq_num(ack.body());
@@ -157,14 +158,19 @@ void Judge::ack_comes(const Net& ack, const Observation& seen, std::uint16_t giv
   const auto seq_num = static_cast<std::uint16_t>(acked);
   context_.for_motes(ack.dest.devid, [&](std::uint16_t mote) {
     const std::uint16_t island = motes_.address(mote).value_or(ack.dest).pid;
-    if (island == ack.dest.pid) originals_.ack_heard(mote, ack, seq_num);
+    if (island != ack.dest.pid) return;
+    // On the air to its sink, or up that one's line, it has not yet come to the mote.
+    const bool last = seen.kind == Observation::Kind::kRadio && seen.frame.dest == ack.dest.devid;
+    const bool sure = given == mote || link_acked(run_, index);
+    const Wait wait = !last ? Wait::kRuns : sure ? Wait::kOver : Wait::kPerhaps;
+    originals_.ack_heard(mote, ack, seq_num, wait);
   });
   for (const std::uint16_t sink : context_.sinks) {
     const Device& device = who_.devices[sink];
     const machine::Address own{sinks_.island(sink), device.am};
-    if (ack.dest == own) originals_.ack_heard(sink, ack, seq_num);
+    if (ack.dest == own) originals_.ack_heard(sink, ack, seq_num, Wait::kOver);
     if (device.partner == kNobody || ack.dest != address_of(device.partner)) continue;
-    originals_.ack_heard(device.partner, ack, seq_num);
+    originals_.ack_heard(device.partner, ack, seq_num, Wait::kOver);
   }
 }
 

@@ -78,7 +78,7 @@ class Judge {
   bool no_room(std::uint16_t node, const Net& net) const;
   // Counts an ack at the originator of the acked message, or at nobody if by a log it was given to
   // `given` while that interface was off.
-  void ack_comes(const Net& ack, const Observation& seen, std::uint16_t given);
+  void ack_comes(std::uint32_t index, const Net& ack, const Observation& seen, std::uint16_t given);
   void serial(std::uint32_t index, const Observation& seen, const Mark& mark);
   // Judges the length of a net_msg on a serial line, the first one that is cut short of a sender.
   void whole(const Observation& seen, std::uint16_t sender);

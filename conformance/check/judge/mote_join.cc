@@ -470,20 +470,26 @@ void MoteJoins::net_msg(std::uint16_t mote, const Observation& seen, const Net& 
   std::erase_if(set, [&](const MoteHypothesis& h) {
     return !h.unknown && (h.join.phase != Phase::kMember || h.join.address != net.src);
   });
+  // A member may send before its ack_join has left (decision 118).
+  const auto acks = [&](const Observation& later) {
+    return later.kind == Observation::Kind::kRadio && !later.received &&
+           later.frame.type == am::kAckJoin && later.frame.src == am;
+  };
+  const bool ack_follows = context_.next(now, context_.response_us(mote), acks) != nullptr;
   for (MoteHypothesis& h : set) {
     const bool was_unknown = h.unknown;
-    if (!was_unknown && h.acks_seen == 0 &&
+    if (!was_unknown && h.acks_seen == 0 && !ack_follows &&
         context_.without(mote, h.accepted_us, now) == Severity::kFail) {
       context_.report("J4-ACK"_rule, only ? Severity::kFail : Severity::kInconclusive, seen.place,
                       mote,
                       {"A net_msg from " + text_of(net.src) + " before any ack_join.",
-                       "ack_join first: messages leave in their order.",
+                       "ack_join, within the response time.",
                        {}});
     }
     h.unknown = false;
     h.join.phase = Phase::kMember;
     h.join.address = net.src;
-    h.acks_seen = std::max<std::uint8_t>(h.acks_seen, 1);
+    if (!ack_follows) h.acks_seen = std::max<std::uint8_t>(h.acks_seen, 1);
     h.sent = true;
     h.sent_us = now;
     if (!was_unknown) continue;

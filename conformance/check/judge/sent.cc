@@ -132,7 +132,7 @@ void Originals::switched(std::uint16_t node, const machine::SetInterface& set,
 
 void Originals::asks_to_join(std::uint16_t node) {
   if (context_.device(node).application) return;  // Its log tells reboots.
-  for (std::size_t i = 0; i < sent_[node].size(); ++i) sent_[node].newest(i).acked = true;
+  for (std::size_t i = 0; i < sent_[node].size(); ++i) sent_[node].newest(i).wait = Wait::kOver;
 }
 
 void Originals::ends(std::uint16_t node, std::int64_t end_us, const InterfaceWatch& interfaces) {
@@ -479,7 +479,7 @@ void Originals::judge_number(std::uint16_t node, const Observation& seen, const 
     Sent& before = ring.newest(i);
     if (before.net.seq_num != net.seq_num) continue;
     const bool awaits =
-        before.net.reliable == 1 && !before.acked && before.net.sound &&
+        before.net.reliable == 1 && before.wait != Wait::kOver && before.net.sound &&
         before.net.trans_id == component::kConnless && seen.place.timed() && before.place.timed() &&
         now - before.place.time_us < context_.ack_timeout_us(node) - context_.early_us(node);
     const bool same =
@@ -489,10 +489,13 @@ void Originals::judge_number(std::uint16_t node, const Observation& seen, const 
       // An ack that nobody captured would have ended the wait.
       const machine::Address dest = before.net.dest;
       const bool by_sink = dest.devid == context_.sink_am || dest.devid == machine::kNullDevid;
-      const std::uint16_t acker = by_sink ? context_.only_sink : context_.mote_of_am[dest.devid];
+      const std::uint16_t acker =
+          by_sink || before.acked ? context_.only_sink : context_.mote_of_am[dest.devid];
+      const Severity severity = before.wait == Wait::kPerhaps
+                                    ? Severity::kInconclusive
+                                    : context_.without(acker, before.place.time_us, now);
       context_.report(
-          same ? "T3-RESEND"_rule : "N12-REUSE"_rule,
-          context_.on_line(node, context_.without(acker, before.place.time_us, now)), seen.place,
+          same ? "T3-RESEND"_rule : "N12-REUSE"_rule, context_.on_line(node, severity), seen.place,
           node,
           {(same ? "The reliable message with number " : "Number ") + number(net.seq_num) +
                (same ? " is sent" : " is used") + " again, " + ms_text(now - before.place.time_us) +

@@ -12,11 +12,15 @@
 
 namespace rubric::check {
 
+/// Whether a node still waits for an ack: one on the air to it may be lost.
+enum class Wait : std::uint8_t { kRuns, kPerhaps, kOver };
+
 /// A message that a node has sent.
 struct Sent {
   Net net;
   Place place;
-  bool acked = false;          ///< Its ack reached the node, or may have.
+  bool acked = false;          ///< Its ack was seen, on its way or at its end.
+  Wait wait = Wait::kRuns;     ///< For its ack.
   bool ack_came = false;       ///< By a log the node was given an ack with its number.
   std::int64_t given_us = -1;  ///< When its ack surely reached the node, by a log.
   std::uint8_t told = 0;       ///< receive_ack events, by a log.
@@ -56,8 +60,8 @@ class Originals {
             machine::Address own);
   /// Counts any other frame of the node on the air.
   void counted(std::uint16_t node) { ++orders_[node]; }
-  /// Notes that an ack of `number` is on the air to `node`, or down its serial line.
-  void ack_heard(std::uint16_t node, const Net& ack, std::uint16_t number);
+  /// Notes that an ack of `number` is on its way to `node`, for which that leaves `wait`.
+  void ack_heard(std::uint16_t node, const Net& ack, std::uint16_t number, Wait wait);
   /// Notes that by a log the node was given this ack.
   void ack_given(std::uint16_t node, const Net& ack, std::int64_t now_us);
   /// Judges receive_ack, by a log.

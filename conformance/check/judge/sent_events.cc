@@ -16,11 +16,13 @@ constexpr std::size_t kSerialOut = 2;
 
 }  // namespace
 
-void Originals::ack_heard(std::uint16_t node, const Net& ack, std::uint16_t acked) {
+void Originals::ack_heard(std::uint16_t node, const Net& ack, std::uint16_t acked, Wait wait) {
   Ring<Sent, kRoom>& ring = sent_[node];
   for (std::size_t i = 0; i < ring.size(); ++i) {
     Sent& sent = ring.newest(i);
-    if (sent.net.seq_num == acked && sent.net.reliable == 1) sent.acked = true;
+    if (sent.net.seq_num != acked || sent.net.reliable != 1) continue;
+    sent.acked = true;
+    sent.wait = std::max(sent.wait, wait);
   }
   if (context_.device(node).application) acks_[node].push({ack, acked});
 }

@@ -145,6 +145,46 @@ TEST(Captures, AfterAJoinRequestNothingIsAwaited) {
   EXPECT_NE(found_in(again).find("F:T3-RESEND"), std::string::npos) << found_in(again);
 }
 
+TEST(Captures, AnAckOnItsWayEndsNoWait) {
+  const auto again = [](bool relayed, bool link_ack) {
+    const NetFields asked = message({11, 2}, {11, kNullDevid}, 700, 1);
+    Script script;
+    script.join(0, 11, 2, 100);
+    script.net(500, 2, 1, asked).up(512, asked.forwarded()).down(540, asked.ack(40)).confirm();
+    if (relayed) script.net(560, 1, 2, asked.ack(40), 11);
+    if (link_ack) script.link_ack();
+    script.net(900, 2, 1, asked);
+    if (!relayed) script.net(1000, 1, 2, asked.ack(40), 11);
+    script.up(1012, asked.forwarded());
+    return found_in(script);
+  };
+  EXPECT_NE(again(false, false).find("F:T3-RESEND"), std::string::npos) << again(false, false);
+  EXPECT_NE(again(true, false).find("I:T3-RESEND"), std::string::npos) << "It may be lost.";
+  EXPECT_EQ(again(true, true).find("T3-RESEND"), std::string::npos) << again(true, true);
+}
+
+TEST(Captures, AMemberMaySendBeforeItsAckJoinHasLeft) {
+  const auto sends = [](bool acks) {
+    Script script;
+    script.request(0, 2, 100).reply(10, 11, 2, 100, 10);
+    script.net(15, 2, 1, update(2, 7)).up(27, update(2, 7).forwarded());
+    if (acks) script.ack_join(35, 11, 2, 100).link_ack().joined(60, 11, 2);
+    return found_in(script);
+  };
+  EXPECT_EQ(sends(true), "");
+  EXPECT_NE(sends(false).find("F:J4-ACK"), std::string::npos) << sends(false);
+}
+
+TEST(Captures, AHostThatNobodyHearsMaySetTheIsland) {
+  Script script;  // Of the line only what the sink sends is captured.
+  script.join(0, 11, 2, 100).join(2000, 30, 3, 200);
+  script.net(3000, 3, 1, message({30, 3}, {30, kNullDevid}, 7));
+  script.up(3012, message({30, 3}, {30, kNullDevid}, 7).forwarded());
+  EXPECT_EQ(found_in(script), "I:");
+  script.down(4000, message({30, kNullDevid}, {30, 3}, 9));
+  EXPECT_NE(found_in(script).find("F:"), std::string::npos) << found_in(script);
+}
+
 TEST(Captures, AFrameToTheWrongAddressIsItsSendersFault) {
   Payload request;
   put16(request, 100);

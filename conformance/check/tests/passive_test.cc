@@ -167,6 +167,29 @@ TEST(Passive, WhatCameDownALineLeavesByRadio) {
   EXPECT_EQ(failures_of(down_one([](Script& s) { answers(s, 700); })), "");  // Too soon to say.
 }
 
+TEST(Passive, LifeOnTheOtherLineShowsWhatIsMissing) {
+  const auto unseen = [](Script script, bool two_files) {
+    Options complete;
+    complete.sniffer_complete = complete.start_cold = true;
+    for (Observation& seen : script.run.seen) {
+      seen.place.file = two_files && seen.kind == Observation::Kind::kSerial ? 1 : 0;
+    }
+    return failures_of(script) + rules_of(findings_of(script, Severity::kInconclusive)) + " " +
+           failures_of(script, complete);
+  };
+  const auto forwards = [](Script& s) {
+    s.net(900, 2, 1, update(2, 8)).link_ack().up(912, update(2, 8).forwarded());
+  };
+  EXPECT_EQ(unseen(down_one(forwards), false), "N7-RADIO N7-RADIO");
+  EXPECT_EQ(unseen(down_one(forwards), true), "N7-RADIO ") << "One recorder may end before.";
+  Script script;
+  script.join(0, 11, 2, 100).net(500, 2, 1, update(2, 8)).link_ack();
+  EXPECT_EQ(unseen(script, false), " ") << "The end.";
+  answers(script, 1200);
+  EXPECT_EQ(unseen(script, false), "N6-FORWARD N6-FORWARD");
+  EXPECT_EQ(unseen(script, true), "N6-FORWARD ");
+}
+
 TEST(Passive, WhatNobodyConfirmedMayNotHaveArrived) {
   const Script script = down_one([](Script& s) { answers(s, 900); }, false);
   EXPECT_EQ(failures_of(script), "");

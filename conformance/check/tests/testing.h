@@ -99,6 +99,7 @@ class Script {
     return *this;
   }
   Script& link_ack() {
+    run.seen.back().ack_request = true;
     Observation seen = run.seen.back();
     seen.kind = Observation::Kind::kLinkAck;
     seen.place.time_us += 1700;
