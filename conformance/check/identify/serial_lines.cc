@@ -33,6 +33,7 @@ std::uint16_t reported_island(const Observation& seen, const Net& net) {
 
 SerialLines::SerialLines(const Run& run, const Given& given, Streams& streams)
     : run_(run), streams_(streams), lines_(run.taps.size()) {
+  join_taps();
   // The one line belongs to the one sink that is given.
   SerialLine* only = nullptr;
   for (std::size_t tap = 0; tap < lines_.size(); ++tap) {
@@ -45,9 +46,27 @@ SerialLines::SerialLines(const Run& run, const Given& given, Streams& streams)
   only->island = only->first = given.only_island();
 }
 
+// A recorder that begins a new file goes on with the same lines, by their names: a tap goes on with
+// that of another that had its last frame before.
+void SerialLines::join_taps() {
+  std::vector<std::size_t> last(lines_.size());
+  for (std::size_t i = 0; i < run_.seen.size(); ++i) last[run_.seen[i].tap] = i;
+  std::vector<bool> seen(lines_.size());
+  for (std::uint32_t tap = 0; tap < lines_.size(); ++tap) line_of_.push_back(tap);
+  for (std::size_t i = 0; i < run_.seen.size(); ++i) {
+    const std::uint32_t tap = run_.seen[i].tap;
+    if (seen[tap]) continue;
+    seen[tap] = true;
+    for (std::uint32_t other = 0; other < lines_.size(); ++other) {
+      const bool same = run_.taps[other].name == run_.taps[tap].name;
+      if (same && other != tap && seen[other] && last[other] < i) line_of_[tap] = line_of_[other];
+    }
+  }
+}
+
 void SerialLines::look(std::uint32_t index) {
   const Observation& seen = run_.seen[index];
-  SerialLine& line = lines_[seen.tap];
+  SerialLine& line = lines_[line_of_[seen.tap]];
   const auto show = [&](std::uint16_t island) {
     line.island = island;
     line.given = false;
@@ -85,7 +104,7 @@ void SerialLines::look(std::uint32_t index) {
 bool SerialLines::repeats(std::uint32_t index) {
   const Observation& seen = run_.seen[index];
   if (!seen.to_mote || !seen.ack_request) return false;
-  SerialLine& line = lines_[seen.tap];
+  SerialLine& line = lines_[line_of_[seen.tap]];
   const std::uint32_t before = line.last_down;
   line.last_down = index + 1;
   if (before == 0) return false;

@@ -29,14 +29,17 @@ class SerialLines {
   /// Returns whether it is the host's repetition: the same packet with the next number, while its
   /// confirmation is missing.
   bool repeats(std::uint32_t index);
-  const SerialLine& at(std::uint32_t tap) const { return lines_[tap]; }
+  const SerialLine& at(std::uint32_t tap) const { return lines_[line_of_[tap]]; }
   /// Returns the islands that lines showed.
   const std::vector<Shown>& shown() const { return shown_; }
 
  private:
+  void join_taps();
+
   const Run& run_;
   Streams& streams_;
-  std::vector<SerialLine> lines_;  // By tap.
+  std::vector<SerialLine> lines_;
+  std::vector<std::uint32_t> line_of_;  // By tap.
   std::vector<Shown> shown_;
 };
 

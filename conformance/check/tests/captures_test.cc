@@ -185,6 +185,27 @@ TEST(Captures, AHostThatNobodyHearsMaySetTheIsland) {
   EXPECT_NE(found_in(script).find("F:"), std::string::npos) << found_in(script);
 }
 
+TEST(Captures, ALineGoesOnInTheNextFile) {
+  Script script;
+  script.join(0, 11, 2, 100).net(1000, 2, 1, message({11, 2}, {12, 5}, 7));
+  set_island(script, 1005, 32);
+  script.up(1012, message({11, 2}, {12, 5}, 7).forwarded());
+  const auto second = std::ranges::find(script.run.seen, true, &Observation::to_mote);
+  const auto rotated = [&](const std::string& name) {
+    auto& run = script.run;
+    run.files = {"1", "2"};
+    run.taps.resize(3);
+    run.taps.push_back({name, machine::Link::kSerial, true});
+    for (auto seen = second; seen != run.seen.end(); ++seen) {
+      seen->place.file = 1;
+      seen->tap = 3;
+    }
+    return found_in(script, false);
+  };
+  EXPECT_EQ(rotated("serial:1"), "");
+  EXPECT_NE(rotated("another"), "");
+}
+
 TEST(Captures, AFrameToTheWrongAddressIsItsSendersFault) {
   Payload request;
   put16(request, 100);
