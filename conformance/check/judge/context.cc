@@ -364,6 +364,22 @@ bool Context::full(std::uint16_t node, std::int64_t time_us) const {
   return busy(node, time_us, time_us, kNone) && crowded(node, time_us);
 }
 
+// Returns whether the node was seen to pass on what came, so that it waits for nothing then.
+bool Context::passed_on(std::uint16_t node, std::vector<Observation>::const_iterator came,
+                        std::int64_t until_us) const {
+  Net net;
+  if (!parse_net(came->frame.payload, net)) return false;
+  for (auto it = came + 1; it != run.seen.end() && it->place.time_us < until_us; ++it) {
+    const Mark& mark = who.marks[static_cast<std::size_t>(it - run.seen.begin())];
+    if (mark.device != node || it->received || it->frame.type != am::kNet) continue;
+    Net out;
+    if (parse_net(it->frame.payload, out) && out.src == net.src && out.seq_num == net.seq_num) {
+      return true;
+    }
+  }
+  return false;
+}
+
 bool Context::crowded(std::uint16_t node, std::int64_t time_us) const {
   constexpr std::size_t kCrowd = 2;
   constexpr std::int64_t kAroundUs = 100'000;
@@ -383,6 +399,7 @@ bool Context::crowded(std::uint16_t node, std::int64_t time_us) const {
     const bool line = it->kind == Observation::Kind::kSerial && mark.device != kNobody;
     const bool air = it->kind == Observation::Kind::kRadio && !it->received && mark.device != node;
     if (it->frame.type != am::kNet) continue;
+    if (!its.hearing && passed_on(node, it, time_us)) continue;
     if (its.hearing) {
       around += mark.receiver == node ? 1 : 0;
     } else if (air && (it->frame.dest == its.am || it->frame.dest == machine::kAmBroadcast)) {

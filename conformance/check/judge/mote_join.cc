@@ -467,9 +467,12 @@ void MoteJoins::net_msg(std::uint16_t mote, const Observation& seen, const Net& 
   // Of two motes with one id in two islands it may be the other.
   const bool only = context_.next_of_am[context_.mote_of_am[context_.device(mote).am]] == kNobody;
   std::vector<MoteHypothesis> before = set;
-  std::erase_if(set, [&](const MoteHypothesis& h) {
-    return !h.unknown && (h.join.phase != Phase::kMember || h.join.address != net.src);
-  });
+  const auto fits = [&](const MoteHypothesis& h) {
+    return h.unknown || (h.join.phase == Phase::kMember && h.join.address == net.src);
+  };
+  // Again under an address that it surely does not have: it has the other.
+  if (std::ranges::any_of(set, [&](const auto& h) { return h.wrong && fits(h); })) return;
+  std::erase_if(set, [&](const MoteHypothesis& h) { return !fits(h); });
   // A member may send before its ack_join has left (decision 118).
   const auto acks = [&](const Observation& later) {
     return later.kind == Observation::Kind::kRadio && !later.received &&
@@ -529,6 +532,7 @@ void MoteJoins::net_msg(std::uint16_t mote, const Observation& seen, const Net& 
   next.acks_seen = 1;
   next.sent = true;
   next.accepted_us = next.sent_us = now;
+  next.wrong = member && severity == Severity::kFail;
   set.assign(1, next);
   if (member) set.push_back(h_before);  // Perhaps only this message was wrong.
 }

@@ -72,6 +72,7 @@ struct MoteHypothesis {
   bool told = false;             ///< Its application got joined(SUCCESS).
   bool sent = false;             ///< It sent a net_msg, so in its own view it is a member.
   std::int64_t sent_us = 0;      ///< The last one with its address.
+  bool wrong = false;            ///< It surely has another address than it shows.
 };
 
 /// A mote, through its lives.

@@ -206,6 +206,61 @@ TEST(Captures, ALineGoesOnInTheNextFile) {
   EXPECT_NE(rotated("another"), "");
 }
 
+TEST(Captures, AfterWrongSourcesTheRightOneIsRight) {
+  Script script;
+  script.join(0, 11, 2, 100);
+  const auto sends = [&](double ms, std::uint16_t devid, std::uint16_t seq_num) {
+    const NetFields net = message({11, devid}, {11, kNullDevid}, seq_num);
+    script.net(ms, 2, 1, net).up(ms + 12, net.forwarded());
+  };
+  for (std::uint16_t i = 0; i < 3; ++i) sends(1000 + 500 * i, 79, 7 + i);
+  EXPECT_EQ(found_in(script), "F:N1-SRC");
+  sends(3000, 2, 10);
+  sends(3500, 2, 11);
+  EXPECT_EQ(found_in(script), "F:N1-SRC");
+  sends(4000, 79, 12);
+  EXPECT_EQ(found_in(script), "F:N1-SRC F:N1-SRC");
+}
+
+TEST(Captures, AnAckOfAReportIsOneOfAnUnreliableMessage) {
+  NetFields report = message({11, 2}, {11, kNullDevid}, 0);
+  Script script;
+  script.join(0, 11, 2, 100).down(100, report.ack(90)).confirm();
+  script.net(110, 1, 2, report.ack(90), 11);
+  EXPECT_NE(found_in(script).find("F:T2-UNRELIABLE"), std::string::npos) << found_in(script);
+  EXPECT_EQ(found_in(script).find("T2-CONTENT"), std::string::npos) << found_in(script);
+}
+
+TEST(Captures, WhatComesFromOtherIslandsIsSeenOnNoLine) {
+  const auto acks = [](machine::Address of) {
+    const NetFields asked = message(of, {11, kNullDevid}, 2464, 1);
+    Script script;
+    script.join(0, 11, 2, 100).down(100, asked.ack(90)).confirm();
+    return found_in(script).find("F:T2-CONTENT") != std::string::npos;
+  };
+  EXPECT_FALSE(acks({12, 8}));
+  EXPECT_TRUE(acks({11, 2}));
+}
+
+TEST(Captures, ABufferIsNotFullOfWhatHasLeft) {
+  const auto loses = [](double forward_ms) {  // A message each 60 ms; the fifth is lost.
+    Script script;
+    script.join(0, 11, 2, 100);
+    for (std::uint16_t i = 0; i < 16; ++i) {
+      const double ms = 1000 + 60 * i;
+      const NetFields net = update(2, 7 + i);
+      script.net(ms, 2, 1, net).link_ack();
+      if (i != 4) script.up(ms + forward_ms, net.forwarded());
+    }
+    std::ranges::stable_sort(script.run.seen, {},
+                             [](const auto& one) { return one.place.time_us; });
+    for (std::size_t i = 0; i < script.run.seen.size(); ++i) script.run.seen[i].place.frame = i + 1;
+    return found_in(script).substr(0, 12);
+  };
+  EXPECT_EQ(loses(12), "F:N6-FORWARD");
+  EXPECT_EQ(loses(240), "I:N6-FORWARD") << "Four were waiting.";
+}
+
 TEST(Captures, AFrameToTheWrongAddressIsItsSendersFault) {
   Payload request;
   put16(request, 100);
