@@ -305,6 +305,10 @@ class Mixed(Captures):
     def test_facts_are_filtered_and_counted(self):
         frames, _ = self.frames("tap.pcapng", "--filter", "frame.channel==12 && frame.rssi < -51")
         self.assertEqual([one["frame"]["channel"] for one in frames], [12] * 4)
+        # What the text shows is what a filter takes: a field of RUBICON is called rssi, too.
+        shown = self.shows(("decode", "--count", 1, self.path / "tap.pcapng"), " frame.rssi=-50.5 ")
+        fact = shown.split()[-1].replace("=", "==")
+        self.assertEqual(len(self.frames("tap.pcapng", "--filter", fact)[0]), 1)
         text = rubric("stats", self.path / "tap.pcapng")[1]
         self.assertIn("1>broadcast", text)
         stats = json.loads(rubric("stats", "--format", "json", self.path / "tap.pcapng")[1])
