@@ -235,7 +235,7 @@ class Mixed(Captures):
         self.assertNotIn("sound as", rubric("decode", ours)[2])
 
     def test_zep_on_other_ports_and_loopbacks_of_bsd(self):
-        loops = {0: b"\2\0\0\0", 108: b"\0\0\0\2"}
+        loops = {0: b"\2\0\0\0", 108: b"\0\0\0\2", 12: b"", 14: b""}
         ack = b"EX\x02\x02" + struct.pack(">I", 1)
         hello = b"EX\x02\xff" + bytes(27) + b"\x08" + bytes(8)
         for link, family in loops.items():
