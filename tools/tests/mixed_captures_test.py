@@ -503,9 +503,11 @@ class Text(ProgramTest):
         self.assertEqual((code, len(out.splitlines())), (0, 2), err)
         self.assertIn("4 of its lines hold no packet; the first is line 2", err)
 
-    def test_a_hex_dump_is_refused_with_the_way_out(self):
+    def test_what_is_no_packets_is_refused_with_the_way_out(self):
         dump = "".join(f"0000  {frame(number).hex(' ')}\n" for number in range(3))
         self.refused(("decode",), "text2pcap -l 195", 66, stdin=dump.encode())
+        shown = "22866\t1\t-\t 27: 15.4 D 00:12:74:01:00:01:01:01 0xFFFF|IPHC|IPv6|ICMPv6|0000\n"
+        self.refused(("decode",), "No Analyzer", 66, stdin=shown.encode())
 
     def test_radio_frames_as_text(self):
         for kind, make in (("crc", with_fcs), ("cc24xx", trailer)):
