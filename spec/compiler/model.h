@@ -66,7 +66,8 @@ struct Expr {
   // Resolved by the checker:
   const Field* field = nullptr;     // kField: the last field of the path.
   std::vector<const Field*> steps;  // kField: every field of the path.
-  std::int64_t offset_bytes = -1;   // kField: from the start of the enclosing structure.
+  std::int64_t offset_bytes = -1;   // kField: from the start of the enclosing structure,
+  int from = -1;                    // or, if it is at no constant position, of this field of it.
   Interval range;
 };
 using ExprPtr = std::unique_ptr<Expr>;
