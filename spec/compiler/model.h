@@ -177,6 +177,7 @@ struct Type {
   std::string requirement;
   std::vector<std::unique_ptr<Field>> fields;     // seq
   std::vector<std::unique_ptr<Field>> instances;  // peeks and interpretations, in order
+  std::vector<std::string> computed;              // Ids of instances that are passed over.
   bool is_mask = false;                       // `-mask`: then only bits, from the highest bit down.
   std::vector<MaskBit> bits;                  // From the highest down; as many as `-mask` says.
   std::optional<std::int64_t> declared_size;  // `-size`: the greatest size.

@@ -117,6 +117,12 @@ class Resolver {
                    "only instances read peeks");
       return nullptr;
     }
+    const auto& computed = scope_.type.computed;
+    if (std::find(computed.begin(), computed.end(), name) != computed.end()) {
+      check_.error(expr.place, fmt::format("instance {} cannot be read here", quote(name)),
+                   "it is computed, and passed over");
+      return nullptr;
+    }
     const std::span before(fields.data(), scope_.fields_before);
     check_.error(expr.place, fmt::format("unknown field {}", quote(name)),
                  suggestion(name, ids_of(before)));
