@@ -31,7 +31,7 @@ constexpr std::int64_t kMostEmpty = 16;
 std::uint32_t index32(std::size_t n) { return static_cast<std::uint32_t>(n); }
 
 // Returns the load of the one number that the expression is; null if it is more.
-const reflect::ExprStep* lone_load(const Expr& expr) {
+const reflect::ExprStep* lone_step(const Expr& expr) {
   return expr.count == 1 && expr.steps[0].op != Op::kConst ? &expr.steps[0] : nullptr;
 }
 
@@ -88,7 +88,7 @@ class FrameWriter {
   }
 
   std::uint32_t measure_of(const Expr& expr, const Place& place) const {
-    const reflect::ExprStep* const load = lone_load(expr);
+    const reflect::ExprStep* const load = lone_step(expr);
     if (!load) return kNone;
     if (load->from != 0) return part_of(load->from - 1, place);
     const std::size_t at = place.base + static_cast<std::size_t>(load->value);
@@ -118,7 +118,7 @@ class FrameWriter {
 
   /// Returns whether the expression is the number `f` alone, which comes next.
   bool is_alone(const Expr& expr, const Field& f, const Place& place) const {
-    const reflect::ExprStep* const load = lone_load(expr);
+    const reflect::ExprStep* const load = lone_step(expr);
     if (!load) return false;
     if (load->from != 0) return &place.type.fields[load->from - 1] == &f;
     return load->value == static_cast<std::int32_t>(size() - place.base);

@@ -128,7 +128,7 @@ std::int64_t evaluate(const Expr& expr, Bytes structure);
 inline constexpr std::size_t kNowhere = INT32_MAX / 2;
 template <class StartOf>
 std::int64_t evaluate_floating(const Expr& expr, Bytes structure, const StartOf& start_of) {
-  ExprStep steps[UINT8_MAX];
+  ExprStep steps[UINT8_MAX] = {};
   std::copy_n(expr.steps, expr.count, steps);
   for (int i = 0; i < expr.count; ++i) {
     const std::uint16_t from = std::exchange(steps[i].from, std::uint16_t{0});

@@ -419,8 +419,8 @@ class File(Folder):
         for text in ("2 * n", " len_body ", "tail"):
             self.assertIn(text, layout)
         expect = self.folder / "expect"
-        made = rubric("generate", "--spec", file, "--count", "400", "--valid", "0.5", "--format",
-                      "hex", "--expect", str(expect)).stdout
+        made = rubric("generate", "--spec", file, "--message", "floating", "--count", "400",
+                      "--valid", "0.5", "--format", "hex", "--expect", str(expect)).stdout
         done = rubric("decode", *args, "--format", "jsonl", stdin=made)
         wanted = [json.loads(one)["error"] for one in expect.read_text().splitlines()]
         for error, found in zip(wanted, map(json.loads, done.stdout.splitlines()), strict=True):
