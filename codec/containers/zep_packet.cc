@@ -275,6 +275,8 @@ bool is_network_link(std::uint16_t link_type) {
     case kLinkNull:
     case kLinkEthernet:
     case kLinkRawIp:
+    case kLinkRawBsd:
+    case kLinkRawOpenBsd:
     case kLinkLoop:
     case kLinkSll:
     case kLinkIpv4:

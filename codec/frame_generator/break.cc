@@ -324,7 +324,7 @@ class Breaker {
   Broken& out_;
 };
 
-/// The number in a structure that is the whole of an expression.
+/// The number at a constant place in a structure that is the whole of an expression.
 struct Load {
   bool lone = false;
   std::size_t offset = 0;  ///< From the start of the structure.
@@ -333,7 +333,7 @@ struct Load {
 
 Load lone_load(const Expr& expr) {
   Load load;
-  if (expr.count != 1 || expr.steps[0].op == Op::kConst) return load;
+  if (expr.count != 1 || expr.steps[0].op == Op::kConst || expr.floats) return load;
   const Op op = expr.steps[0].op;
   load.lone = true;
   load.offset = static_cast<std::size_t>(expr.steps[0].value);
@@ -426,7 +426,7 @@ class FieldChange {
   bool elements(std::size_t node, std::size_t width) {
     const Node& n = decoded_[node];
     const Field& f = *n.field;
-    // A constant number of elements is always whole.
+    // A constant number of elements is always whole; one at a place that varies is left alone.
     if (f.repeat == Repeat::kCount && !lone_load(f.count).lone) return false;
     if (f.kind == reflect::Kind::kStruct && f.type && f.type->min_size != width) return false;
     const std::size_t count = n.size / width;

@@ -30,10 +30,9 @@ constexpr std::int64_t kMostEmpty = 16;
 
 std::uint32_t index32(std::size_t n) { return static_cast<std::uint32_t>(n); }
 
-// Returns the offset of the one number that the expression is; -1 if it is more.
-std::int32_t lone_load_offset(const Expr& expr) {
-  if (expr.count != 1 || expr.steps[0].op == Op::kConst) return -1;
-  return expr.steps[0].value;
+// Returns the load of the one number that the expression is; null if it is more.
+const reflect::ExprStep* lone_step(const Expr& expr) {
+  return expr.count == 1 && expr.steps[0].op != Op::kConst ? &expr.steps[0] : nullptr;
 }
 
 std::uint32_t element_bytes(const Field& f) {
@@ -89,13 +88,40 @@ class FrameWriter {
   }
 
   std::uint32_t measure_of(const Expr& expr, const Place& place) const {
-    const std::int32_t load = lone_load_offset(expr);
-    if (load < 0) return kNone;
-    const std::size_t at = place.base + static_cast<std::size_t>(load);
+    const reflect::ExprStep* const load = lone_step(expr);
+    if (!load) return kNone;
+    if (load->from != 0) return part_of(load->from - 1, place);
+    const std::size_t at = place.base + static_cast<std::size_t>(load->value);
     for (std::uint32_t i = 0; i < draft_.parts.size(); ++i) {
       if (draft_.parts[i].kind == PartKind::kNumber && draft_.parts[i].at == at) return i;
     }
     return kNone;
+  }
+
+  /// Returns the number that field `index` of a structure is.
+  std::uint32_t part_of(int index, const Place& place) const {
+    for (std::uint32_t i = 0; i < draft_.parts.size(); ++i) {
+      const Part& part = draft_.parts[i];
+      const bool is_it = part.scope == place.scope && part.field == &place.type.fields[index];
+      if (is_it && part.kind == PartKind::kNumber) return i;
+    }
+    return kNone;
+  }
+
+  std::int64_t value_of(const Expr& expr, const Place& place) const {
+    if (!expr.floats) return reflect::evaluate(expr, from(place.base));
+    return reflect::evaluate_floating(expr, from(place.base), [&](int index) -> std::size_t {
+      const std::uint32_t part = part_of(index, place);
+      return part == kNone ? reflect::kNowhere : draft_.parts[part].at - place.base;
+    });
+  }
+
+  /// Returns whether the expression is the number `f` alone, which comes next.
+  bool is_alone(const Expr& expr, const Field& f, const Place& place) const {
+    const reflect::ExprStep* const load = lone_step(expr);
+    if (!load) return false;
+    if (load->from != 0) return &place.type.fields[load->from - 1] == &f;
+    return load->value == static_cast<std::int32_t>(size() - place.base);
   }
 
   bool structure(const Type& type, std::uint32_t parent, std::size_t room, bool hard) {
@@ -105,7 +131,7 @@ class FrameWriter {
     const Place place{type, index32(draft_.scopes.size() - 1), base, end, hard};
     for (std::uint16_t i = 0; i < type.field_count; ++i) {
       const Field& f = type.fields[i];
-      if (f.condition.count && !reflect::evaluate(f.condition, from(base))) continue;
+      if (f.condition.count && !value_of(f.condition, place)) continue;
       if (!field(f, i, place) || size() > end) return false;
     }
     return true;
@@ -152,13 +178,12 @@ class FrameWriter {
 
   // Returns the most that a number may be so that the array which it counts has room.
   std::int64_t most_for(const Field& f, const Place& place) const {
-    const auto at = static_cast<std::int32_t>(size() - place.base);
     const std::size_t behind = left(place) + f.shared_bytes() - f.width_bytes;
     for (const Field* g = &f + 1; g < place.type.fields + place.type.field_count; ++g) {
-      if (g->repeat == Repeat::kCount && lone_load_offset(g->count) == at) {
+      if (g->repeat == Repeat::kCount && is_alone(g->count, f, place)) {
         return static_cast<std::int64_t>(behind / element_bytes(*g));
       }
-      if (g->extent == Extent::kSize && lone_load_offset(g->size) == at) {
+      if (g->extent == Extent::kSize && is_alone(g->size, f, place)) {
         return static_cast<std::int64_t>(behind);
       }
     }
@@ -166,10 +191,9 @@ class FrameWriter {
   }
 
   bool measures_room(const Field& f, const Place& place) const {
-    const auto at = static_cast<std::int32_t>(size() - place.base);
     for (const Field* g = &f + 1; g < place.type.fields + place.type.field_count; ++g) {
       if (g->kind == Kind::kStruct && g->repeat == Repeat::kOnce && g->extent == Extent::kSize &&
-          lone_load_offset(g->size) == at) {
+          is_alone(g->size, f, place)) {
         return true;
       }
     }
@@ -191,13 +215,13 @@ class FrameWriter {
     draft_.parts[part].element_bytes = index32(width);
     std::size_t room = left(place);
     if (f.extent == Extent::kSize) {
-      const std::int64_t bytes = reflect::evaluate(f.size, from(place.base));
+      const std::int64_t bytes = value_of(f.size, place);
       if (bytes < 0 || static_cast<std::size_t>(bytes) > room) return false;
       room = static_cast<std::size_t>(bytes);
     }
     std::size_t count = room / width;
     if (f.repeat == Repeat::kCount) {
-      const std::int64_t wanted = reflect::evaluate(f.count, from(place.base));
+      const std::int64_t wanted = value_of(f.count, place);
       if (wanted < 0 || static_cast<std::size_t>(wanted) > count) return false;
       count = static_cast<std::size_t>(wanted);
       draft_.parts[part].measure = measure_of(f.count, place);
@@ -225,8 +249,8 @@ class FrameWriter {
 
   bool varying(const Field& f, const Place& place) {
     const bool counted = f.repeat == Repeat::kCount;
-    const std::int64_t count = counted ? reflect::evaluate(f.count, from(place.base))
-                                       : static_cast<std::int64_t>(random_.below(4));
+    const std::int64_t count =
+        counted ? value_of(f.count, place) : static_cast<std::int64_t>(random_.below(4));
     for (std::int64_t i = 0; i < count; ++i) {
       const std::size_t begin = size();
       if (!counted) draft_.ends.push_back(index32(begin));
@@ -263,7 +287,7 @@ class FrameWriter {
     const std::uint32_t part = add_part(PartKind::kBytes, f, place);
     std::size_t bytes = random_.below(std::min<std::size_t>(left(place), 24) + 1);
     if (f.extent == Extent::kSize) {
-      const std::int64_t wanted = reflect::evaluate(f.size, from(place.base));
+      const std::int64_t wanted = value_of(f.size, place);
       if (wanted < 0 || static_cast<std::size_t>(wanted) > left(place)) return false;
       bytes = static_cast<std::size_t>(wanted);
       draft_.parts[part].measure = measure_of(f.size, place);
@@ -284,7 +308,7 @@ class FrameWriter {
   bool nested(const Field& f, const Place& place) {
     const Type* type = f.type;
     if (f.choice) {
-      type = reflect::choose(*f.choice, reflect::evaluate(f.choice->key, from(place.base)));
+      type = reflect::choose(*f.choice, value_of(f.choice->key, place));
       // A route that chooses leads to a message.
       if (!type) return route_.choice_count == 0 && (f.extent == Extent::kOwn || opaque(f, place));
       draft_.path.push_back(type);
@@ -325,7 +349,7 @@ class FrameWriter {
 
   // Fills the bytes that something other than one number says the structure has.
   bool fixed(const Field& f, const Type& type, std::uint32_t part, const Place& place) {
-    const std::int64_t bytes = reflect::evaluate(f.size, from(place.base));
+    const std::int64_t bytes = value_of(f.size, place);
     if (bytes < 0 || static_cast<std::size_t>(bytes) > left(place)) return false;
     const std::size_t end = size() + static_cast<std::size_t>(bytes);
     const std::size_t scope = draft_.scopes.size();

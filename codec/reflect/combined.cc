@@ -15,9 +15,10 @@ const Switch* choice_of(const Type& carrier) {
 }
 
 bool same(const Expr& a, const Expr& b) {
-  return std::equal(
-      a.steps, a.steps + a.count, b.steps, b.steps + b.count,
-      [](const ExprStep& x, const ExprStep& y) { return x.op == y.op && x.value == y.value; });
+  return std::equal(a.steps, a.steps + a.count, b.steps, b.steps + b.count,
+                    [](const ExprStep& x, const ExprStep& y) {
+                      return x.op == y.op && x.value == y.value && x.from == y.from;
+                    });
 }
 
 bool same_places(const Type& a, const Type& b) {

@@ -1,6 +1,7 @@
 #include "codec/reflect/decode.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "codec/reflect/text_field.h"
 
@@ -210,17 +211,35 @@ class Decoder {
     return out_.bytes.sub(base, end - base);
   }
 
+  /// Returns the value of an expression of the open structure, which begins at `base`.
+  RUBRIC_INLINE std::int64_t value_of(const Expr& expr, std::uint32_t base,
+                                      std::uint32_t limit) const {
+    if (__builtin_expect(expr.floats, 0)) return floating(expr, base, limit);
+    return evaluate(expr, from(base, limit));
+  }
+  __attribute__((noinline)) std::int64_t floating(const Expr& expr, std::uint32_t base,
+                                                  std::uint32_t limit) const {
+    const Field* const fields = nodes_[open_].type->fields;
+    return evaluate_floating(expr, from(base, limit), [&](int index) -> std::size_t {
+      for (std::size_t i = open_ + 1; i < count_; i = nodes_[i].end) {
+        if (nodes_[i].field == &fields[index]) return nodes_[i].offset - base;
+      }
+      return kNowhere;
+    });
+  }
+
   /// Decodes the fields of `type` in [base, limit) and closes the node.
   bool structure(const Type& type, const Field* field, std::uint32_t base, std::uint32_t limit) {
     const std::size_t index = count_;
     push(NodeKind::kStruct, field, base, 0).type = &type;
+    const std::size_t around = std::exchange(open_, index);
     // A structure never takes more than its greatest size, whatever is left around it.
     if (limit - base > type.max_size) limit = base + type.max_size;
     std::uint32_t at = base;
     bool good = true;
     const Field* const fields_end = type.fields + type.field_count;
     for (const Field* f = type.fields; good && f != fields_end; ++f) {
-      if (f->condition.count && !evaluate(f->condition, from(base, limit))) continue;
+      if (f->condition.count && !value_of(f->condition, base, limit)) continue;
       if (f->width_bytes != 0 && f->repeat == Repeat::kOnce) {
         good = __builtin_expect(f->kind == Kind::kBits, 0) ? bits(*f, at, limit)
                                                            : number(*f, at, limit);
@@ -234,6 +253,7 @@ class Decoder {
     Node& node = nodes_[index];
     node.size = at - base;
     node.end = static_cast<std::uint32_t>(count_);
+    open_ = around;
     return good;
   }
 
@@ -274,7 +294,7 @@ class Decoder {
   bool other(const Field& f, std::uint32_t base, std::uint32_t& at, std::uint32_t limit) {
     std::uint32_t end = limit;
     if (f.extent == Extent::kSize) {
-      const std::int64_t size = evaluate(f.size, from(base, limit));
+      const std::int64_t size = value_of(f.size, base, limit);
       if (size < 0 || size > limit - at) return truncated(f, at, limit, size);
       end = at + static_cast<std::uint32_t>(size);
     }
@@ -319,7 +339,7 @@ class Decoder {
               std::uint32_t limit) {
     const Type* type = f.type;
     if (f.choice) {
-      const std::int64_t key = evaluate(f.choice->key, from(base, limit));
+      const std::int64_t key = value_of(f.choice->key, base, limit);
       type = choose(*f.choice, key);
       if (!type && f.extent == Extent::kOwn) {
         if (end > at) push_note({NoteKind::kUnknownMessage, at, &f, nullptr, key});
@@ -368,7 +388,7 @@ class Decoder {
     }
     std::int64_t count = 0;
     if (f.repeat == Repeat::kCount) {
-      count = evaluate(f.count, from(base, limit));
+      count = value_of(f.count, base, limit);
       if (count < 0 || count * width > limit - at) return truncated(f, at, limit, count * width);
     } else {
       count = (limit - at) / width;
@@ -394,7 +414,7 @@ class Decoder {
   /// Decodes elements of varying size, one after the other.
   bool varying(const Field& f, std::uint32_t base, std::uint32_t& at, std::uint32_t limit) {
     const bool to_end = f.repeat == Repeat::kToEnd;
-    const std::int64_t count = to_end ? limit - at : evaluate(f.count, from(base, limit));
+    const std::int64_t count = to_end ? limit - at : value_of(f.count, base, limit);
     if (count < 0 || (!to_end && count * f.type->min_size > limit - at)) {
       return truncated(f, at, limit, count * f.type->min_size);
     }
@@ -468,6 +488,7 @@ class Decoder {
   const Switch* more_;
   Node* nodes_ = nullptr;
   std::size_t count_ = 0;  // Number of nodes; set in `out_` at the end.
+  std::size_t open_ = 0;   // The node of the innermost structure that is not closed yet.
 };
 
 void decode(const Type& type, Bytes bytes, Tail tail, bool is_message, Decoded& out,

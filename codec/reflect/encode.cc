@@ -24,16 +24,31 @@ struct Measure {
   bool missing = false;  ///< Not given, and not filled in yet.
 };
 
+/// A structure that is being written.
+struct Part {
+  std::size_t base = 0;             ///< Where it begins in the output.
+  std::vector<std::size_t> starts;  ///< Where its fields begin, up to the present one.
+
+  /// Returns where a load reads in the output.
+  std::size_t place(const ExprStep& load) const {
+    const std::size_t from = load.from == 0                   ? base
+                             : load.from - 1U < starts.size() ? starts[load.from - 1U]
+                                                              : kNowhere;
+    return from + static_cast<std::size_t>(load.value);
+  }
+};
+
 /// The measures met so far. Copyable, so that an attempt can be taken back.
 class Measures {
  public:
-  /// Notes that a structure of this type begins at `base`: its sizes and counts read measures.
-  void expect(const Type& type, std::size_t base) {
+  /// Notes which measures the sizes and counts of a structure of this type read: from its begin on
+  /// (0), or from that of field `from - 1` on, which is the present one.
+  void expect(const Type& type, const Part& in, std::uint16_t from) {
     for (int i = 0; i < type.field_count; ++i) {
       for (const Expr* expr : {&type.fields[i].size, &type.fields[i].count}) {
         const ExprStep* load = only_load(*expr);
-        if (!load || find(place(*load, base))) continue;
-        all_.push_back({place(*load, base), nullptr, {}, false});
+        if (!load || load->from != from || find(in.place(*load))) continue;
+        all_.push_back({in.place(*load), nullptr, {}, false});
       }
     }
   }
@@ -46,18 +61,17 @@ class Measures {
     return nullptr;
   }
 
-  /// Returns the measure that `expr` of the structure at `base` reads; null unless it is a single
-  /// one.
-  Measure* of(const Expr& expr, std::size_t base) {
+  /// Returns the measure that `expr` of a structure reads; null unless it is a single one.
+  Measure* of(const Expr& expr, const Part& in) {
     const ExprStep* load = only_load(expr);
-    return load ? find(place(*load, base)) : nullptr;
+    return load ? find(in.place(*load)) : nullptr;
   }
 
   /// Returns a measure that `expr` reads and that is missing; null if there is none.
-  const Measure* missing_in(const Expr& expr, std::size_t base) {
+  const Measure* missing_in(const Expr& expr, const Part& in) {
     for (int i = 0; i < expr.count; ++i) {
       if (!is_load(expr.steps[i])) continue;
-      const Measure* measure = find(place(expr.steps[i], base));
+      const Measure* measure = find(in.place(expr.steps[i]));
       if (measure && measure->missing) return measure;
     }
     return nullptr;
@@ -74,9 +88,6 @@ class Measures {
  private:
   static bool is_load(const ExprStep& step) {
     return step.op >= Op::kLoadU8 && step.op <= Op::kLoadLe32;
-  }
-  static std::size_t place(const ExprStep& load, std::size_t base) {
-    return base + static_cast<std::size_t>(load.value);
   }
   static const ExprStep* only_load(const Expr& expr) {
     const ExprStep* found = nullptr;
@@ -133,6 +144,22 @@ class Encoder {
 
   Bytes from(std::size_t base) const { return Bytes(out_.data() + base, out_.size() - base); }
 
+  std::int64_t value_of(const Expr& expr, const Part& in) const {
+    if (!expr.floats) return evaluate(expr, from(in.base));
+    return evaluate_floating(expr, from(in.base), [&](int index) -> std::size_t {
+      const auto i = static_cast<std::size_t>(index);
+      return i < in.starts.size() ? in.starts[i] - in.base : kNowhere;
+    });
+  }
+
+  /// Returns whether expressions of the type read fields at places that vary.
+  static bool has_floating(const Type& type) {
+    return std::any_of(type.fields, type.fields + type.field_count, [](const Field& f) {
+      return f.size.floats || f.count.floats || f.condition.floats ||
+             (f.choice && f.choice->key.floats);
+    });
+  }
+
   void append_stale(std::size_t n) {
     const std::uint8_t* p = stale_.data() + stale_used_;
     out_.insert(out_.end(), p, p + n);
@@ -140,19 +167,19 @@ class Encoder {
   }
 
   // Requires the number that an expression reads, since something depends on it.
-  void require_given(const Expr& expr, std::size_t base) {
-    if (const Measure* measure = measures_.missing_in(expr, base)) {
+  void require_given(const Expr& expr, const Part& in) {
+    if (const Measure* measure = measures_.missing_in(expr, in)) {
       throw EncodeError(measure->path, "is missing, and what follows depends on it",
                         measure->field->requirement);
     }
   }
 
   /// Makes `expr`, which measures `what` at the present path, equal `actual`.
-  void settle(const Expr& expr, std::size_t base, std::size_t actual, const std::string& what,
+  void settle(const Expr& expr, const Part& in, std::size_t actual, const std::string& what,
               const Field& measured) {
-    Measure* measure = measures_.of(expr, base);
-    if (measure && measure->missing) return fill_in(*measure, expr, base, actual, what);
-    const std::int64_t given = evaluate(expr, from(base));
+    Measure* measure = measures_.of(expr, in);
+    if (measure && measure->missing) return fill_in(*measure, expr, in, actual, what);
+    const std::int64_t given = value_of(expr, in);
     const std::int64_t missing = given - static_cast<std::int64_t>(actual);
     if (missing == 0) return;
     const std::string problem = "expected " + to_string(actual) + ", given " + to_string(given) +
@@ -163,13 +190,13 @@ class Encoder {
     throw EncodeError(measure->path, problem, measured.requirement, missing);
   }
 
-  void fill_in(Measure& measure, const Expr& expr, std::size_t base, std::size_t actual,
+  void fill_in(Measure& measure, const Expr& expr, const Part& in, std::size_t actual,
                const std::string& what) {
     const Field& field = *measure.field;
     const auto wanted = static_cast<std::int64_t>(actual);
     const auto comes_to = [&](std::int64_t value) {
       store_number(field, value, out_.data() + measure.offset);
-      return evaluate(expr, from(base));
+      return value_of(expr, in);
     };
     // Sizes grow with their measure, so the least value that is large enough is the right one.
     std::int64_t value = 0;
@@ -199,24 +226,29 @@ class Encoder {
                value_text(object),
            type.requirement);
     }
-    const std::size_t base = out_.size();
-    measures_.expect(type, base);
+    Part in{out_.size(), {}};
+    measures_.expect(type, in, 0);
+    const bool floats = has_floating(type);
     std::size_t used = 0;  // Members of the object that were taken.
     for (std::uint16_t i = 0; i < type.field_count; ++i) {
       const Field& f = type.fields[i];
-      if (f.condition.count) {
-        require_given(f.condition, base);
-        if (!evaluate(f.condition, from(base))) continue;
+      if (floats) {
+        in.starts.push_back(out_.size() - f.shared_bytes());
+        measures_.expect(type, in, static_cast<std::uint16_t>(i + 1));
       }
-      if (f.kind == Kind::kBytes && interpreted(type, i, object, base, limit)) {
+      if (f.condition.count) {
+        require_given(f.condition, in);
+        if (!value_of(f.condition, in)) continue;
+      }
+      if (f.kind == Kind::kBytes && interpreted(type, i, object, in, limit)) {
         ++used;
         continue;
       }
       const std::size_t path_size = push_path(f.name);
-      used += one_field(f, object, base, limit) + (converted_beside(f, object) ? 1 : 0);
+      used += one_field(f, object, in, limit) + (converted_beside(f, object) ? 1 : 0);
       path_.resize(path_size);
     }
-    if (used != object.keys.size()) unknown_member(type, object, base);
+    if (used != object.keys.size()) unknown_member(type, object, in);
   }
 
   std::size_t push_path(std::string_view name) {
@@ -232,38 +264,38 @@ class Encoder {
   }
 
   /// Returns how many members of the object it took.
-  std::size_t one_field(const Field& f, const Value& object, std::size_t base, Limit limit) {
+  std::size_t one_field(const Field& f, const Value& object, const Part& in, Limit limit) {
     const Value* value = object.find(f.name);
     if (f.repeat == Repeat::kOnce && f.kind <= Kind::kMask) return number(f, object, value);
     if (f.repeat != Repeat::kOnce) {
       if (!value) fail("is missing: expected an array", f.requirement);
-      array(f, *value, base, limit);
+      array(f, *value, in, limit);
       return 1 + (f.enumeration && object.find(std::string(f.name) + "_name"));
     }
     if (f.kind == Kind::kBytes) {
       const Value* bytes = f.text ? object.find(std::string(f.name) + "_hex") : nullptr;
       if (!f.text || f.text->encoding == Encoding::kNone) {
-        opaque(f, value, base, limit);
+        opaque(f, value, in, limit);
       } else {
-        text(f, value, bytes, base, limit);
+        text(f, value, bytes, in, limit);
       }
       return (value ? 1 : 0) + (bytes ? 1 : 0);
     }
-    if (!value && f.choice && f.extent == Extent::kOwn && chooses_nothing(f, base)) return 0;
+    if (!value && f.choice && f.extent == Extent::kOwn && chooses_nothing(f, in)) return 0;
     if (!value) fail("is missing: expected an object", f.requirement);
-    nested(f, *value, base, limit);
+    nested(f, *value, in, limit);
     return 1;
   }
 
-  bool chooses_nothing(const Field& f, std::size_t base) {
-    require_given(f.choice->key, base);
-    return choose(*f.choice, evaluate(f.choice->key, from(base))) == nullptr;
+  bool chooses_nothing(const Field& f, const Part& in) {
+    require_given(f.choice->key, in);
+    return choose(*f.choice, value_of(f.choice->key, in)) == nullptr;
   }
 
-  [[noreturn]] void unknown_member(const Type& type, const Value& object, std::size_t base) {
+  [[noreturn]] void unknown_member(const Type& type, const Value& object, const Part& in) {
     std::string known;
     for (std::size_t i = 0; i < object.keys.size(); ++i) {
-      if (known_member(type, object.keys[i], base)) {
+      if (known_member(type, object.keys[i], in)) {
         if (object.find(object.keys[i]) == &object.items[i]) continue;
         push_path(object.keys[i]);
         fail("is given twice", type.requirement);
@@ -278,10 +310,10 @@ class Encoder {
     fail("expected each field once", type.requirement);
   }
 
-  bool known_member(const Type& type, const std::string& key, std::size_t base) {
+  bool known_member(const Type& type, const std::string& key, const Part& in) {
     for (int i = 0; i < type.field_count; ++i) {
       const Field& f = type.fields[i];
-      if (f.condition.count && !evaluate(f.condition, from(base))) continue;
+      if (f.condition.count && !value_of(f.condition, in)) continue;
       if (key == f.name || (f.enumeration && key == std::string(f.name) + "_name") ||
           (f.mask && key == std::string(f.name) + "_bits") ||
           (f.text && key == std::string(f.name) + "_hex") ||
@@ -312,16 +344,16 @@ class Encoder {
     return result.members;
   }
 
-  void opaque(const Field& f, const Value* value, std::size_t base, Limit limit) {
+  void opaque(const Field& f, const Value* value, const Part& in, Limit limit) {
     const std::size_t at = out_.size();
     if (value && (!value->is(Value::Kind::kString) || !parse_hex(value->text, out_))) {
       fail("expected hex digits, given " + value_text(*value), f.requirement);
     }
-    finish_bytes(f, at, base, limit);
+    finish_bytes(f, at, in, limit);
   }
 
   /// Encodes text, as `value` says, or as the bytes in hex beside it.
-  void text(const Field& f, const Value* value, const Value* bytes, std::size_t base, Limit limit) {
+  void text(const Field& f, const Value* value, const Value* bytes, const Part& in, Limit limit) {
     const std::size_t at = out_.size();
     if (value && !value->is(Value::Kind::kString)) {
       fail("expected text, given " + value_text(*value), f.requirement);
@@ -339,23 +371,23 @@ class Encoder {
       }
     } else {
       const std::string problem =
-          append_text(f, value ? value->text : "", room(f, base, limit), out_);
+          append_text(f, value ? value->text : "", room(f, in, limit), out_);
       if (!problem.empty()) fail(problem, f.requirement);
     }
-    finish_bytes(f, at, base, limit);
+    finish_bytes(f, at, in, limit);
   }
 
   /// Returns the bytes that a field has to fill; none where its content says how many they are.
-  std::optional<std::size_t> room(const Field& f, std::size_t base, Limit limit) {
-    if (f.extent == Extent::kSize && !measures_.missing_in(f.size, base)) {
-      const std::int64_t size = evaluate(f.size, from(base));
+  std::optional<std::size_t> room(const Field& f, const Part& in, Limit limit) {
+    if (f.extent == Extent::kSize && !measures_.missing_in(f.size, in)) {
+      const std::int64_t size = value_of(f.size, in);
       if (size >= 0 && size <= kMostPadding) return static_cast<std::size_t>(size);
     }
     if (f.extent == Extent::kToEnd && limit) return *limit - std::min(*limit, out_.size());
     return std::nullopt;
   }
 
-  void finish_bytes(const Field& f, std::size_t at, std::size_t base, Limit limit) {
+  void finish_bytes(const Field& f, std::size_t at, const Part& in, Limit limit) {
     const std::size_t size = out_.size() - at;
     if (f.extent == Extent::kTerminated) {
       // What comes after a terminator would be read as the next field.
@@ -366,20 +398,20 @@ class Encoder {
         return;
       fail("expected one byte " + to_string(f.text->terminator) + ", at the end", f.requirement);
     }
-    if (f.extent == Extent::kSize) return settle(f.size, base, size, bytes_text(size), f);
+    if (f.extent == Extent::kSize) return settle(f.size, in, size, bytes_text(size), f);
     if (limit && out_.size() != *limit) {
       fail("expected " + bytes_text(*limit - std::min(at, *limit)) + ", given " + to_string(size),
            f.requirement);
     }
   }
 
-  void array(const Field& f, const Value& value, std::size_t base, Limit limit) {
+  void array(const Field& f, const Value& value, const Part& in, Limit limit) {
     if (!value.is(Value::Kind::kArray)) {
       fail("expected an array, given " + value_text(value), f.requirement);
     }
     const std::size_t count = value.items.size();
     if (f.repeat == Repeat::kCount) {
-      settle(f.count, base, count, to_string(count) + (count == 1 ? " element" : " elements"), f);
+      settle(f.count, in, count, to_string(count) + (count == 1 ? " element" : " elements"), f);
     }
     const std::size_t path_size = path_.size();
     for (std::size_t i = 0; i < count; ++i) {
@@ -398,30 +430,30 @@ class Encoder {
     }
   }
 
-  void nested(const Field& f, const Value& value, std::size_t base, Limit limit) {
+  void nested(const Field& f, const Value& value, const Part& in, Limit limit) {
     const Type* type = f.type;
     if (f.choice) {
-      require_given(f.choice->key, base);
-      const std::int64_t key = evaluate(f.choice->key, from(base));
+      require_given(f.choice->key, in);
+      const std::int64_t key = value_of(f.choice->key, in);
       type = choose(*f.choice, key);
-      if (!type && more_ && base == start_ && value.is(Value::Kind::kObject)) {
+      if (!type && more_ && in.base == start_ && value.is(Value::Kind::kObject)) {
         type = choose(*more_, key);
       }
-      if (!type) return opaque(f, &value, base, limit);
+      if (!type) return opaque(f, &value, in, limit);
     }
     if (f.extent == Extent::kOwn) return structure(*type, value, limit);
-    part(f, *type, value, base, limit);
+    part(f, *type, value, in, limit);
   }
 
   /// Encodes a structure whose size is given elsewhere; stale bytes may follow its content.
-  void part(const Field& f, const Type& type, const Value& value, std::size_t base, Limit limit) {
+  void part(const Field& f, const Type& type, const Value& value, const Part& in, Limit limit) {
     const std::size_t at = out_.size();
     Limit end = limit;
     if (f.extent == Extent::kSize) {
-      const Measure* measure = measures_.of(f.size, base);
+      const Measure* measure = measures_.of(f.size, in);
       end = std::nullopt;
       if (!measure || !measure->missing) {
-        const std::int64_t size = evaluate(f.size, from(base));
+        const std::int64_t size = value_of(f.size, in);
         if (size < 0) fail("its size comes to " + to_string(size), f.requirement);
         end = at + static_cast<std::size_t>(size);
       }
@@ -440,7 +472,7 @@ class Encoder {
     if (end && out_.size() < *end && !stale_.empty()) {
       what += " and " + to_string(rest) + " stale ones are left";
     }
-    if (f.extent == Extent::kSize) return settle(f.size, base, size, what, f);
+    if (f.extent == Extent::kSize) return settle(f.size, in, size, what, f);
     if (end && out_.size() != *end) {
       fail("expected " + bytes_text(*end - std::min(at, *end)) + ", given " + what, f.requirement,
            static_cast<std::int64_t>(*end) - static_cast<std::int64_t>(out_.size()));
@@ -464,7 +496,7 @@ class Encoder {
     open_parts_ = mark.open_parts;
   }
 
-  bool interpreted(const Type& type, std::uint16_t index, const Value& object, std::size_t base,
+  bool interpreted(const Type& type, std::uint16_t index, const Value& object, const Part& in,
                    Limit limit) {
     bool given = false;
     std::optional<EncodeError> error;
@@ -475,8 +507,8 @@ class Encoder {
       const Value* value = candidate.overlays == index ? object.find(f.name) : nullptr;
       if (!value || object.find(type.fields[index].name)) continue;
       given = true;
-      require_given(f.condition, base);
-      if (f.condition.count && !evaluate(f.condition, from(base))) continue;
+      require_given(f.condition, in);
+      if (f.condition.count && !value_of(f.condition, in)) continue;
       const int count = f.choice ? f.choice->count + 1 : 1;
       for (int c = 0; c < count; ++c) {
         const Type* tried = f.type;
@@ -486,7 +518,7 @@ class Encoder {
         const Mark before = mark();
         try {
           push_path(f.name);
-          attempt(f, *tried, *value, base, limit, chosen);
+          attempt(f, *tried, *value, in, limit, chosen);
           path_.resize(before.path);
           if (chosen) return true;
         } catch (const EncodeError& e) {
@@ -512,13 +544,13 @@ class Encoder {
     });
   }
 
-  void attempt(const Field& f, const Type& type, const Value& value, std::size_t base, Limit limit,
+  void attempt(const Field& f, const Type& type, const Value& value, const Part& in, Limit limit,
                bool& chosen) {
     const auto picks = [&] {
-      return !f.choice || choose(*f.choice, evaluate(f.choice->key, from(base))) == &type;
+      return !f.choice || choose(*f.choice, value_of(f.choice->key, in)) == &type;
     };
     try {
-      part(f, type, value, base, limit);
+      part(f, type, value, in, limit);
     } catch (const EncodeError&) {
       chosen = picks();
       throw;

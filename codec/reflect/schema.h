@@ -57,11 +57,15 @@ enum class Op : uint8_t {
 struct ExprStep {
   Op op;
   int32_t value;  ///< The constant, or the offset in bytes of a load.
+  /// 1 + the index of the field from whose start the load's offset counts; 0: the structure's
+  /// start.
+  uint16_t from = 0;  // Another one only in specs that are read at run time.
 };
 /// No steps: the expression is absent. At most kMaxExprDepth values on the stack.
 struct Expr {
   const ExprStep* steps;
   uint8_t count;
+  bool floats = false;  ///< A step counts from a field.
 };
 constexpr int kMaxExprDepth = 8;
 

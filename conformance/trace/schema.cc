@@ -14,20 +14,22 @@ namespace {
 using reflect::Field;
 using reflect::Type;
 
-bool reads(const reflect::Expr& expr, std::int32_t offset) {
+bool reads(const reflect::Expr& expr, int index, std::int32_t offset) {
   for (int i = 0; i < expr.count; ++i) {
     const reflect::ExprStep& step = expr.steps[i];
     const bool load = step.op >= reflect::Op::kLoadU8 && step.op <= reflect::Op::kLoadLe32;
-    if (load && step.value == offset) return true;
+    const bool here = step.from == 0 ? step.value == offset : step.from == index + 1;
+    if (load && here) return true;
   }
   return false;
 }
 
 bool measures(const Field& field, const Type& owner) {
-  if (field.fixed_offset < 0) return false;
+  const auto index = static_cast<int>(&field - owner.fields);
   for (int i = 0; i < owner.field_count; ++i) {
     const Field& other = owner.fields[i];
-    if (reads(other.size, field.fixed_offset) || reads(other.count, field.fixed_offset)) {
+    if (reads(other.size, index, field.fixed_offset) ||
+        reads(other.count, index, field.fixed_offset)) {
       return true;
     }
   }

@@ -32,6 +32,8 @@ seq:
   - {id: sized, type: str, size: length, pad-right: 32}
   - {id: name, type: str, size: 8, terminator: 0, encoding: ascii}
   - {id: label, type: strz}
+  - {id: amount, type: u1, valid: {max: 9}}
+  - {id: amounts, type: u2, repeat: expr, repeat-expr: amount}
   - {id: bytes, terminator: 10, eos-error: false}
   - {id: number, type: u2, if: flag}
   - {id: part, type: low_bits_first, if: version == 4}

@@ -66,7 +66,8 @@ struct Expr {
   // Resolved by the checker:
   const Field* field = nullptr;     // kField: the last field of the path.
   std::vector<const Field*> steps;  // kField: every field of the path.
-  std::int64_t offset_bytes = -1;   // kField: from the start of the enclosing structure.
+  std::int64_t offset_bytes = -1;   // kField: from the start of the enclosing structure,
+  int from = -1;                    // or, if it is at no constant position, of this field of it.
   Interval range;
 };
 using ExprPtr = std::unique_ptr<Expr>;
@@ -176,6 +177,7 @@ struct Type {
   std::string requirement;
   std::vector<std::unique_ptr<Field>> fields;     // seq
   std::vector<std::unique_ptr<Field>> instances;  // peeks and interpretations, in order
+  std::vector<std::string> computed;              // Ids of instances that are passed over.
   bool is_mask = false;                       // `-mask`: then only bits, from the highest bit down.
   std::vector<MaskBit> bits;                  // From the highest down; as many as `-mask` says.
   std::optional<std::int64_t> declared_size;  // `-size`: the greatest size.

@@ -23,6 +23,12 @@ seq:
     encoding: ASCII
   - id: label
     type: strz
+  - id: amount
+    type: u1
+  - id: amounts
+    type: u2
+    repeat: expr
+    repeat-expr: amount
   - id: bytes
     terminator: 10
     eos-error: false

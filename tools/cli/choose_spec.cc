@@ -108,45 +108,78 @@ bool is_of_the_file(const std::error_code& error) {
   return std::any_of(std::begin(kAll), std::end(kAll), [&](std::errc one) { return error == one; });
 }
 
-}  // namespace
+/// The protocol that fits best, and why.
+struct Choice {
+  const reflect::Protocol* usual;
+  const reflect::Protocol* best;
+  Fit usual_fit;
+  Fit best_fit;
 
-const reflect::Protocol& choose_spec(const InputOptions& options) {
+  std::string reason() const {
+    return fmt::format("{}, which decodes {} of its first {} messages wholly, {} {}", best->id,
+                       best_fit.wholly, usual_fit.messages, usual->id, usual_fit.wholly);
+  }
+};
+
+std::string first_file(const InputOptions& options) {
+  return options.files.empty() ? "-" : options.files.front();
+}
+
+// Throws std::system_error if the file cannot be read now, but perhaps later.
+Choice best_choice(const InputOptions& options) {
   const reflect::Protocol& usual = protocol_of(kUsual);
-  if (options.follow || !options.as_message.empty()) return usual;
-  const std::string file = options.files.empty() ? "-" : options.files.front();
-  if (options.files.empty() && lines::asked_by_motecom()) return usual;
+  Choice choice{&usual, &usual, {}, {}};
+  if (options.follow || !options.as_message.empty()) return choice;
+  const std::string file = first_file(options);
+  if (options.files.empty() && lines::asked_by_motecom()) return choice;
   std::vector<std::uint8_t> beginning;
   try {
-    if (lines::parse_address(file)) return usual;
+    if (lines::parse_address(file)) return choice;
     beginning = plain_beginning(beginning_of(file));
   } catch (const std::invalid_argument&) {
-    return usual;  // Who reads the file says what is wrong.
+    return choice;  // Who reads the file says what is wrong.
   } catch (const std::system_error& error) {
-    if (is_of_the_file(error.code())) return usual;
+    if (is_of_the_file(error.code())) return choice;
     throw std::system_error(error.code(), file);  // The file may be read yet, by another spec.
   }
   const Sample sample = sample_of(options, view(beginning));
-  const Fit usual_fit = fit_of(usual, sample);
-  if (2 * usual_fit.wholly >= usual_fit.messages) return usual;
-  const reflect::Protocol* best = &usual;
-  Fit best_fit = usual_fit;
+  choice.usual_fit = choice.best_fit = fit_of(usual, sample);
+  if (2 * choice.usual_fit.wholly >= choice.usual_fit.messages) return choice;
   for (const std::string& name : protocol_names()) {
     if (!chosen_by_content(name)) continue;
     const reflect::Protocol& other = protocol_of(name);
     const Fit fit = fit_of(other, sample);
-    if (fit.points() <= best_fit.points()) continue;
-    best = &other;
-    best_fit = fit;
+    if (fit.points() <= choice.best_fit.points()) continue;
+    choice.best = &other;
+    choice.best_fit = fit;
   }
-  if (best != &usual) {
-    text::print(
-        stderr,
-        "rubric: {}: read by the spec {}, which decodes {} of its first {} messages wholly, {} {} "
-        "(--spec chooses another)\n",
-        file == "-" ? "stdin" : file, best->id, best_fit.wholly, usual_fit.messages, usual.id,
-        usual_fit.wholly);
+  return choice;
+}
+
+void say(const InputOptions& options, const std::string& what) {
+  const std::string file = first_file(options);
+  text::print(stderr, "rubric: {}: {}\n", file == "-" ? "stdin" : file, what);
+}
+
+}  // namespace
+
+const reflect::Protocol& choose_spec(const InputOptions& options) {
+  const Choice choice = best_choice(options);
+  if (choice.best != choice.usual) {
+    say(options, fmt::format("read by the spec {} (--spec chooses another)", choice.reason()));
   }
-  return *best;
+  return *choice.best;
+}
+
+void say_if_another_spec_fits(const InputOptions& options) {
+  try {
+    const Choice choice = best_choice(options);
+    if (choice.best == choice.usual) return;
+    say(options,
+        fmt::format("its messages fit {} less well than {}", choice.usual->id, choice.reason()));
+  } catch (const std::system_error&) {
+    return;  // Who reads the file says it.
+  }
 }
 
 }  // namespace rubric::cli

@@ -15,4 +15,8 @@ inline constexpr const char* kAutoSpec = "auto";
 /// in use, and files that are followed, have no beginning yet: rubicon.
 const reflect::Protocol& choose_spec(const InputOptions& options);
 
+/// Says on stderr if choose_spec() would return another one than rubicon: for those who read by
+/// rubicon alone.
+void say_if_another_spec_fits(const InputOptions& options);
+
 }  // namespace rubric::cli

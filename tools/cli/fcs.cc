@@ -12,10 +12,16 @@ constexpr std::int32_t kCorrelationMin = 40;
 constexpr std::int32_t kCorrelationMax = 115;
 constexpr std::uint64_t kAlikeMin = 8;
 constexpr std::uint64_t kAlikeToSay = 3;
+constexpr std::uint64_t kAlikeOfNoisy = 24;
+constexpr std::uint64_t kFcsBytes = 2;
 
 bool has_fcs(const Packet& packet) {
   return packet.link_type == kLinkRadioFcs && packet.fcs != kAbsent &&
          (packet.error.fault == Fault::kNone || packet.error.fault == Fault::kFcs);
+}
+
+bool lacks_fcs_alone(const Packet& packet) {
+  return packet.cut_by_capture() && packet.dropped_bytes == kFcsBytes && !packet.bytes.empty();
 }
 
 }  // namespace
@@ -26,6 +32,9 @@ FcsKind fcs_kind(std::string_view name) {
 }
 
 void FcsGuess::take(const Packet& packet) {
+  if (packet.link_type == kLinkRadioFcs && packet.cut_by_capture()) {
+    ++(lacks_fcs_alone(packet) ? left_out_ : cut_);
+  }
   if (!has_fcs(packet)) return;
   if (packet.error.fault == Fault::kNone) {
     ++sound_;
@@ -42,15 +51,30 @@ void FcsGuess::take(const Packet& packet) {
 }
 
 bool FcsGuess::is_cc24xx() const {
-  return alike_ >= kAlikeMin && sound_ * 50 <= alike_ && other_ * 9 <= alike_;
+  const bool nearly_all = alike_ >= kAlikeMin && other_ * 9 <= alike_;
+  const bool most = alike_ >= kAlikeOfNoisy && other_ * 2 <= alike_;
+  return (nearly_all || most) && sound_ * 50 <= alike_;
 }
 
 bool FcsGuess::may_be_cc24xx() const {
   return alike_ >= kAlikeToSay && sound_ == 0 && other_ == 0 && !is_cc24xx();
 }
 
+bool FcsGuess::fits_nowhere() const { return alike_ + other_ >= kAlikeMin && sound_ == 0; }
+
+bool FcsGuess::is_left_out() const {
+  return left_out_ != 0 && cut_ == 0 && sound_ == 0 && alike_ + other_ == 0;
+}
+
 void reread_fcs(FcsKind kind, Packet& packet) {
-  if (packet.link_type != kLinkRadioFcs || packet.error.fault == Fault::kCut) return;
+  if (packet.link_type != kLinkRadioFcs) return;
+  const bool may_lack_it = kind == FcsKind::kNone || kind == FcsKind::kLeftOut;
+  if (may_lack_it && lacks_fcs_alone(packet)) {
+    packet.link_type = kLinkRadioNoFcs;
+    packet.dropped_bytes = 0;
+    return decode_radio_record(packet.bytes, kLinkRadioNoFcs, packet);
+  }
+  if (packet.error.fault == Fault::kCut) return;
   if (kind == FcsKind::kCc24xx && has_fcs(packet)) {
     packet.radio.rssi = static_cast<std::int8_t>(packet.fcs & 0xFF);
     packet.radio.lqi = static_cast<std::int16_t>(packet.fcs >> 8 & 0x7F);

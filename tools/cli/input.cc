@@ -272,7 +272,14 @@ class Run {
     }
     if (is_hex_dump(beginning)) {
       return "this is a hex dump with offsets; 'text2pcap -l 195 FILE FILE.pcap' makes a capture "
-             "of it (-l 230 for radio frames without FCS)";
+             "of it (-l 230 for radio frames without FCS, -l 148 for packets from the dispatch "
+             "byte "
+             "on)";
+    }
+    const std::string_view text(reinterpret_cast<const char*>(beginning.data()), beginning.size());
+    if (text.substr(0, text.find('\n')).find(": 15.4 ") != text.npos) {
+      return "this is Cooja's list of radio messages as an analyzer shows it, without their bytes; "
+             "its menu has 'No Analyzer', and one that writes pcap";
     }
     if (const PrefixedLine line = find_prefixed_line(beginning); line.number != 0) {
       return unknown_prefix_text(line.number, {line.prefix.begin(), line.prefix.end()});

@@ -89,15 +89,21 @@ void choose_fcs(const InputOptions& options, Bytes beginning, Reading& reading) 
   FcsGuess guess;
   auto look = [&](const Packet& packet) { guess.take(packet); };
   make_reader(reading.format, reading.options)->feed(beginning, look);
-  if (guess.may_be_cc24xx()) {
+  if (guess.is_cc24xx()) {
+    reading.fcs = FcsKind::kCc24xx;
+    reading.remark =
+        "its radio frames end with RSSI and link quality in place of the FCS (--fcs cc24xx)";
+  } else if (guess.is_left_out()) {
+    reading.fcs = FcsKind::kLeftOut;
+    reading.remark = "its radio frames were captured without their FCS";
+  } else if (guess.may_be_cc24xx()) {
     reading.remark =
         "no FCS of its radio frames fits; if a TI chip put RSSI and link quality there: --fcs "
         "cc24xx";
+  } else if (guess.fits_nowhere()) {
+    reading.remark =
+        "no FCS of its radio frames fits; if they have none, as Cooja writes them: --fcs none";
   }
-  if (!guess.is_cc24xx()) return;
-  reading.fcs = FcsKind::kCc24xx;
-  reading.remark =
-      "its radio frames end with RSSI and link quality in place of the FCS (--fcs cc24xx)";
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include "conformance/check/input/read_trace.h"
 #include "conformance/check/observation.h"
 #include "conformance/check/report/words.h"
+#include "tools/cli/choose_spec.h"
 #include "tools/cli/color.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/output.h"
@@ -85,6 +86,7 @@ bool add_file(const CheckOptions& options, const std::string& file, check::RunRe
   cli::InputOptions one = options.input;
   one.files = {file};
   one.prints = false;
+  cli::say_if_another_spec_fits(one);
   const cli::InputResult result = cli::read_packets(one, take, {}, logs);
   if (!error.empty()) cli::unreadable(error);
   if (result.failed && !result.damaged) cli::exit_with(cli::kExitInput);

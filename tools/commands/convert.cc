@@ -197,7 +197,8 @@ void add_convert(cli::Command& app) {
   sub.add_option("--only", options->only, "Keep only packets of this framing: hdlc, sf or radio")
       .one_of({"hdlc", "sf", "radio"});
   sub.add_option("--filter", options->filter,
-                 "Keep only packets for which this holds, as in 'rubric decode'");
+                 "Keep only packets for which this holds, as in 'rubric decode'")
+      .check(cli::given);
   cli::add_spec_option(sub, options->input);
   sub.exit_code_of([options] {
     settle_target(*options);

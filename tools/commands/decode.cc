@@ -339,9 +339,12 @@ void add_decode(cli::Command& app) {
   command.add_option("--format", options->format, "Print text, jsonl (rubric.decode/1) or csv")
       .one_of({"text", "jsonl", "csv"})
       .show_default();
-  command.add_option("--filter", options->filter,
-                     "Print only frames for which this holds: message==updates && src.devid==4");
-  command.add_option("--fields", options->fields, "Print only these fields, as in a.b,c");
+  command
+      .add_option("--filter", options->filter,
+                  "Print only frames for which this holds: message==updates && src.devid==4")
+      .check(cli::given);
+  command.add_option("--fields", options->fields, "Print only these fields, as in a.b,c")
+      .check(cli::given);
   command
       .add_option("--time", options->time,
                   "Print times as epoch (seconds, as captured), utc or local (dates), relative "

@@ -154,9 +154,11 @@ void add_forward(cli::Command& app) {
   add_source_options(command, *options);
   cli::add_write_options(command, options->write,
                          "Keep packets of both directions in this pcapng file, not a pipe", true);
-  command.add_option("--filter", options->filter,
-                     "Give clients only packets for which this holds, as in 'rubric decode'; "
-                     "--write keeps all");
+  command
+      .add_option("--filter", options->filter,
+                  "Give clients only packets for which this holds, as in 'rubric decode'; "
+                  "--write keeps all")
+      .check(cli::given);
   cli::add_spec_option(command, options->input);
   command.add_flag("--verbose", options->server.verbose, "Say which clients come and leave");
   command.footer(

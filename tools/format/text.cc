@@ -441,14 +441,15 @@ void append_notes(const Record& record, Styled& styled) {
   }
 }
 
-// Appends what the sniffer states, where it states anything.
+// Appends what the sniffer states, where it states anything, by the names that filters have:
+// messages have fields of the same names.
 void append_facts(const RadioFacts& facts, Styled& styled) {
   if (!facts.any()) return;
   std::string text;
-  if (facts.rssi) text += fmt::format("rssi={} ", *facts.rssi);
-  if (facts.lqi != kAbsent) text += fmt::format("lqi={} ", facts.lqi);
-  if (facts.channel != kAbsent) text += fmt::format("channel={} ", facts.channel);
-  if (facts.slot != kAbsent) text += fmt::format("slot={} ", facts.slot);
+  if (facts.rssi) text += fmt::format("frame.rssi={} ", *facts.rssi);
+  if (facts.lqi != kAbsent) text += fmt::format("frame.lqi={} ", facts.lqi);
+  if (facts.channel != kAbsent) text += fmt::format("frame.channel={} ", facts.channel);
+  if (facts.slot != kAbsent) text += fmt::format("frame.slot={} ", facts.slot);
   styled.put(Style::kDim, text);
 }
 

@@ -39,9 +39,10 @@ class Fcs(Folder):
         self.assertGreater(len(frames), 50)
         return [bytes.fromhex(frame["raw"]) for frame in frames]
 
-    def pcap(self, frames):
+    def pcap(self, frames, missing=0):
+        """Each frame was longer by so many bytes than what was captured."""
         file = self.folder / "sniffed.pcap"
-        records = (struct.pack("<4I", i, 0, len(frame), len(frame)) + frame
+        records = (struct.pack("<4I", i, 0, len(frame), len(frame) + missing) + frame
                    for i, frame in enumerate(frames))
         header = struct.pack("<I2H4I", 0xA1B2C3D4, 2, 4, 0, 0, 65535, 195)
         file.write_bytes(header + b"".join(records))
@@ -73,6 +74,38 @@ class Fcs(Folder):
         again = self.folder / "again.pcap"
         rubric("convert", "--format", "pcap", "-o", again, file)
         self.assertEqual(again.read_bytes()[24:], file.read_bytes()[24:])
+
+    def test_trailers_of_a_noisy_channel(self):
+        frames = self.radio_frames()
+        ends = [frame + bytes((196, (0x80 if i % 4 else 0) + 90)) for i, frame in enumerate(frames)]
+        code, out, err = rubric("decode", "--format", "csv", "--fields", "index,error",
+                                self.pcap(ends))
+        self.assertEqual((code, err.count("--fcs cc24xx")), (1, 1))
+        self.assertEqual(out.decode().split("\r\n")[1:-1],
+                         [f"{i}," + ("" if i % 4 else "fcs") for i in range(len(frames))])
+
+    def test_frames_that_were_captured_without_fcs(self):
+        """As Contiki's Cooja writes them: the record says that two bytes are missing."""
+        frames = self.radio_frames()
+        for args in ((), ("--fcs", "none")):
+            code, out, err = rubric("decode", "--format", "jsonl", *args, self.pcap(frames, 2))
+            shown = [json.loads(line) for line in out.splitlines()]
+            self.assertEqual([bytes.fromhex(one["raw"]) for one in shown], frames)
+            self.assertEqual((code, {one["error"] for one in shown}), (0, {None}))
+            self.assertEqual(err.count("captured without their FCS"), 0 if args else 1)
+        self.assertEqual(rubric("check", self.pcap(frames, 2))[1].count(b", 0 rules exercised"), 0)
+        for missing in (1, 3):
+            out = rubric("decode", "--format", "jsonl", self.pcap(frames, missing))[1]
+            self.assertEqual({json.loads(line)["error"]["fault"] for line in out.splitlines()},
+                             {"cut"})
+
+    def test_frames_whose_fcs_is_none(self):
+        """As of today's Cooja: nothing says that it is missing."""
+        for ends in (b"", b"\xff\xff"):
+            file = self.pcap([frame + ends for frame in self.radio_frames()])
+            code, _, err = rubric("decode", file)
+            self.assertEqual((code, err.count("no FCS of its radio frames fits")), (1, 1), err)
+            self.assertIn("--fcs none", err)
 
     def test_damaged_check_sums_are_not_taken_for_them(self):
         frames = self.radio_frames()

@@ -235,7 +235,7 @@ class Mixed(Captures):
         self.assertNotIn("sound as", rubric("decode", ours)[2])
 
     def test_zep_on_other_ports_and_loopbacks_of_bsd(self):
-        loops = {0: b"\2\0\0\0", 108: b"\0\0\0\2"}
+        loops = {0: b"\2\0\0\0", 108: b"\0\0\0\2", 12: b"", 14: b""}
         ack = b"EX\x02\x02" + struct.pack(">I", 1)
         hello = b"EX\x02\xff" + bytes(27) + b"\x08" + bytes(8)
         for link, family in loops.items():
@@ -305,6 +305,10 @@ class Mixed(Captures):
     def test_facts_are_filtered_and_counted(self):
         frames, _ = self.frames("tap.pcapng", "--filter", "frame.channel==12 && frame.rssi < -51")
         self.assertEqual([one["frame"]["channel"] for one in frames], [12] * 4)
+        # What the text shows is what a filter takes: a field of RUBICON is called rssi, too.
+        shown = self.shows(("decode", "--count", 1, self.path / "tap.pcapng"), " frame.rssi=-50.5 ")
+        fact = shown.split()[-1].replace("=", "==")
+        self.assertEqual(len(self.frames("tap.pcapng", "--filter", fact)[0]), 1)
         text = rubric("stats", self.path / "tap.pcapng")[1]
         self.assertIn("1>broadcast", text)
         stats = json.loads(rubric("stats", "--format", "json", self.path / "tap.pcapng")[1])
@@ -499,9 +503,11 @@ class Text(ProgramTest):
         self.assertEqual((code, len(out.splitlines())), (0, 2), err)
         self.assertIn("4 of its lines hold no packet; the first is line 2", err)
 
-    def test_a_hex_dump_is_refused_with_the_way_out(self):
+    def test_what_is_no_packets_is_refused_with_the_way_out(self):
         dump = "".join(f"0000  {frame(number).hex(' ')}\n" for number in range(3))
         self.refused(("decode",), "text2pcap -l 195", 66, stdin=dump.encode())
+        shown = "22866\t1\t-\t 27: 15.4 D 00:12:74:01:00:01:01:01 0xFFFF|IPHC|IPv6|ICMPv6|0000\n"
+        self.refused(("decode",), "No Analyzer", 66, stdin=shown.encode())
 
     def test_radio_frames_as_text(self):
         for kind, make in (("crc", with_fcs), ("cc24xx", trailer)):

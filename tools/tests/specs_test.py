@@ -61,6 +61,22 @@ types:
 """
 
 
+FLOATING = """meta: {id: floating, endian: be, encoding: ASCII}
+seq:
+  - {id: name, type: strz}
+  - {id: n, type: u1}
+  - {id: values, type: u2, repeat: expr, repeat-expr: n}
+  - {id: len_body, type: u2le}
+  - {id: body, size: len_body}
+  - {id: high, type: b4}
+  - {id: kind, type: b4}
+  - {id: chosen, type: {switch-on: kind, cases: {1: pair}}}
+  - {id: tail, size: high * 2 - n, if: kind != 0}
+types:
+  pair: {seq: [{id: a, type: u1}, {id: b, type: u1}]}
+"""
+
+
 def little_memory():
     if not sanitized():
         resource.setrlimit(resource.RLIMIT_AS, (1 << 30, 1 << 30))
@@ -385,6 +401,34 @@ class File(Folder):
         self.assertEqual(found, wanted)
         refused = rubric("install-wireshark", "--dir", str(self.folder), "--spec", file)
         self.assertIn("5:29: error: the size 'length - 2' can be negative", refused.stderr)
+
+    def test_a_size_may_be_behind_what_varies(self):
+        file = self.file(FLOATING, "floating.ksy")
+        line = "414200 02 00010002 0300 AABBCC 21 0708 0909"
+        args = ("--spec", file, "--as", "floating")
+        shown = rubric("decode", *args, "--format", "jsonl", stdin=f"{line}\n414200 05 0001\n")
+        whole, cut = (json.loads(one) for one in shown.stdout.splitlines())
+        self.assertEqual(whole["fields"], {
+            "name": "AB", "n": 2, "values": [1, 2], "len_body": 3, "body": "aabbcc", "high": 2,
+            "kind": 1, "chosen": {"a": 7, "b": 8}, "tail": "0909"}, shown.stderr)
+        self.assertEqual((cut["error"]["fault"], cut["error"]["offset"]), ("truncated", 6))
+        del whole["raw"], whole["fields"]["n"], whole["fields"]["len_body"]
+        made = rubric("encode", "--spec", file, "--format", "hex", stdin=json.dumps(whole))
+        self.assertEqual(made.stdout.replace(" ", ""), line.replace(" ", "") + "\n", made.stderr)
+        layout = rubric("explain", "--spec", file, "floating").stdout
+        for text in ("2 * n", " len_body ", "tail"):
+            self.assertIn(text, layout)
+        expect = self.folder / "expect"
+        made = rubric("generate", "--spec", file, "--message", "floating", "--count", "400",
+                      "--valid", "0.5", "--format", "hex", "--expect", str(expect)).stdout
+        done = rubric("decode", *args, "--format", "jsonl", stdin=made)
+        wanted = [json.loads(one)["error"] for one in expect.read_text().splitlines()]
+        for error, found in zip(wanted, map(json.loads, done.stdout.splitlines()), strict=True):
+            found = found["error"]
+            self.assertEqual(error and (error["fault"], error["offset"]),
+                             found and (found["fault"], found["offset"]))
+        refused = rubric("install-wireshark", "--dir", str(self.folder), "--spec", file)
+        self.assertIn("'n' is at no constant position", refused.stderr)
 
     def test_text_and_bits_are_refused_for_a_dissector(self):
         self.refused(("install-wireshark", "--dir", str(self.folder), "--spec",

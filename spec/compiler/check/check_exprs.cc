@@ -117,10 +117,22 @@ class Resolver {
                    "only instances read peeks");
       return nullptr;
     }
+    const auto& computed = scope_.type.computed;
+    if (std::find(computed.begin(), computed.end(), name) != computed.end()) {
+      check_.error(expr.place, fmt::format("instance {} cannot be read here", quote(name)),
+                   "it is computed, and passed over");
+      return nullptr;
+    }
     const std::span before(fields.data(), scope_.fields_before);
     check_.error(expr.place, fmt::format("unknown field {}", quote(name)),
                  suggestion(name, ids_of(before)));
     return nullptr;
+  }
+
+  int index_of(const Field& field) const {
+    const auto& fields = scope_.type.fields;
+    const auto is_it = [&](const auto& one) { return one.get() == &field; };
+    return static_cast<int>(std::find_if(fields.begin(), fields.end(), is_it) - fields.begin());
   }
 
   const Field* inner(const Expr& expr, const Field& outer, const std::string& name) {
@@ -143,7 +155,14 @@ class Resolver {
     return nullptr;
   }
 
-  /// Returns whether `step` is at a constant place in every frame.
+  /// Returns whether the field that is the whole path may be at a place that differs from frame to
+  /// frame: where it is found again. Carriers are told apart by constant places.
+  bool may_float(const Expr& expr) const {
+    return check_.at_run_time && expr.path.size() == 1 && !scope_.peeks &&
+           scope_.type.carrier.empty();
+  }
+
+  /// Returns whether `step` is where expressions can read it.
   bool is_fixed(const Expr& expr, const Field& step) {
     const std::string what = quote(to_text(expr));
     if (step.repeat != RepeatKind::kOnce) {
@@ -151,7 +170,7 @@ class Resolver {
     } else if (step.condition) {
       check_.error(expr.place, fmt::format("{} may be absent", what),
                    "a field without 'if' was expected");
-    } else if (step.fixed_offset < 0) {
+    } else if (step.fixed_offset < 0 && !may_float(expr)) {
       check_.error(expr.place, fmt::format("{} is at no constant position", what),
                    "what comes before it must have a constant size");
     } else {
@@ -166,7 +185,8 @@ class Resolver {
     for (std::size_t i = 0; step != nullptr; ++i) {
       if (check_.is_open(step)) return open();
       if (!is_fixed(expr, *step)) return open();
-      offset += step->fixed_offset;
+      if (step->fixed_offset < 0) expr.from = index_of(*step);
+      offset += std::max<std::int64_t>(step->fixed_offset, 0);
       expr.steps.push_back(step);
       if (i + 1 == expr.path.size()) break;
       step = inner(expr, *step, expr.path[i + 1]);

@@ -85,7 +85,11 @@ const Type* find_type(Check& check, const Spec& spec, const std::string& name,
   if (const Type* whole = import == nullptr ? nullptr : find_type(*import, id)) return whole;
   std::vector<std::string> known = ids_of(where->types);
   if (where == &spec) known.insert(known.end(), kNumberTypes.begin(), kNumberTypes.end());
-  check.error(place, fmt::format("unknown type {}", quote(name)), suggestion(id, known));
+  const bool eight_bytes = id.size() >= 2 && id.find_first_of("usf") == 0 && id[1] == '8';
+  check.error(place, fmt::format("unknown type {}", quote(name)),
+              name.find('(') != name.npos ? "arguments of types are not read"
+              : eight_bytes ? "at most 4 bytes are read as a number; 'size: 8' keeps them"
+                            : suggestion(id, known));
   return nullptr;
 }
 

@@ -4,10 +4,15 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 
 namespace rubricc {
 namespace {
+
+/// Keys of Kaitai Struct that mean more than what is read here.
+constexpr std::array<std::string_view, 6> kOfKaitai{"params",  "process",   "repeat-until",
+                                                    "include", "to-string", "expr"};
 
 constexpr int kNestingMax = 60;
 
@@ -115,8 +120,9 @@ YamlMap::YamlMap(const YamlInput& input, const YAML::Node& node, std::string_vie
     const bool of_another_tool = key.starts_with("-orig-") || key.starts_with("-webide-");
     if (!allowed.empty() && !of_another_tool &&
         std::find(allowed.begin(), allowed.end(), key) == allowed.end()) {
+      const bool of_kaitai = std::find(kOfKaitai.begin(), kOfKaitai.end(), key) != kOfKaitai.end();
       input.error(pair.first, fmt::format("unknown key {} of {}", quote(key), what),
-                  suggestion(key, allowed));
+                  of_kaitai ? "it is Kaitai Struct's, and is not read" : suggestion(key, allowed));
       refused_keys_ = true;
       continue;
     }

@@ -74,7 +74,7 @@ class Layout {
 
   void add_choice(const Type& owner, const Field& f, const std::string& path) {
     const Field* key_field = nullptr;
-    if (f.choice->key.count == 1) path_at(owner, f.choice->key.steps[0].value, &key_field);
+    if (f.choice->key.count == 1) path_of(f.choice->key.steps[0], owner, &key_field);
     const EnumTable* names = key_field ? key_field->enumeration : nullptr;
     choices_ += fmt::format("\n  {} by {}", path, expr_text(f.choice->key, owner));
     if (f.condition.count) choices_ += fmt::format(", if {}", expr_text(f.condition, owner));
@@ -150,6 +150,8 @@ using reflect::Repeat;
 using reflect::Type;
 using reflect::ValidKind;
 
+namespace {
+
 std::string path_at(const Type& type, std::int32_t offset, const Field** field) {
   *field = nullptr;
   for (int i = 0; i < type.field_count; ++i) {
@@ -165,6 +167,14 @@ std::string path_at(const Type& type, std::int32_t offset, const Field** field) 
     }
   }
   return fmt::format("byte {}", offset);
+}
+
+}  // namespace
+
+std::string path_of(const ExprStep& load, const Type& type, const Field** field) {
+  if (load.from == 0) return path_at(type, load.value, field);
+  *field = &type.fields[load.from - 1];
+  return (*field)->name;
 }
 
 namespace {
@@ -217,7 +227,7 @@ Operand operand(const ExprStep& step, const Type& type) {
     result.is_const = true;
     result.value = step.value;
   } else {
-    result.text = path_at(type, step.value, &result.field);
+    result.text = path_of(step, type, &result.field);
   }
   return result;
 }
@@ -434,7 +444,7 @@ bool leads_to(const Field& f, const Type& message, Reach& reach) {
   if (reach.values.empty() && !reach.otherwise) return false;
   reach.key = expr_text(f.choice->key, *reach.parent);
   if (f.choice->key.count == 1) {
-    path_at(*reach.parent, f.choice->key.steps[0].value, &reach.key_field);
+    path_of(f.choice->key.steps[0], *reach.parent, &reach.key_field);
   }
   return true;
 }

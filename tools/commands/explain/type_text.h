@@ -10,9 +10,10 @@
 
 namespace rubric::explain {
 
-/// Returns the field of `type` (or of a structure in it) at this offset, as a path; "byte 2" if
-/// there is no number. `field` becomes that field, or null.
-std::string path_at(const reflect::Type& type, std::int32_t offset, const reflect::Field** field);
+/// Returns the field of `type` (or of a structure in it) that the load reads, as a path; "byte 2"
+/// if there is no number. `field` becomes that field, or null.
+std::string path_of(const reflect::ExprStep& load, const reflect::Type& type,
+                    const reflect::Field** field);
 
 /// Returns an expression over the fields of `type`: "trans_id == connless and app_id == mockup".
 std::string expr_text(const reflect::Expr& expr, const reflect::Type& type);

@@ -26,6 +26,8 @@ reflect::Op op_of(ExprOp op) {
 static_assert(static_cast<int>(ExprOp::kNot) - static_cast<int>(ExprOp::kAdd) ==
               static_cast<int>(reflect::Op::kNot) - static_cast<int>(reflect::Op::kAdd));
 
+std::uint16_t from_of(const Expr& expr) { return static_cast<std::uint16_t>(expr.from + 1); }
+
 /// Appends a number of bits: its bytes joined, without the bits above it and below it.
 void append_bits(const Expr& expr, std::vector<reflect::ExprStep>& out) {
   const Field& field = *expr.field;
@@ -36,7 +38,8 @@ void append_bits(const Expr& expr, std::vector<reflect::ExprStep>& out) {
   for (int i = 0; i < field.width_bytes; ++i) {
     const int byte = field.little_endian ? field.width_bytes - 1 - i : i;
     if (i > 0) constant(256, reflect::Op::kMul);
-    out.push_back({reflect::Op::kLoadU8, static_cast<std::int32_t>(expr.offset_bytes + byte)});
+    out.push_back(
+        {reflect::Op::kLoadU8, static_cast<std::int32_t>(expr.offset_bytes + byte), from_of(expr)});
     const int bits = field.bit_width + field.bit_shift - 8 * (field.width_bytes - 1);
     if (i == 0 && bits < 8) constant(std::int64_t{1} << bits, reflect::Op::kMod);
     if (i > 0) out.push_back({reflect::Op::kAdd, 0});
@@ -49,7 +52,8 @@ void append(const Expr& expr, std::vector<reflect::ExprStep>& out) {
   for (const auto& operand : expr.operands) append(*operand, out);
   const bool is_field = expr.op == ExprOp::kField;
   out.push_back({is_field ? load(*expr.field) : op_of(expr.op),
-                 static_cast<std::int32_t>(is_field ? expr.offset_bytes : expr.value)});
+                 static_cast<std::int32_t>(is_field ? expr.offset_bytes : expr.value),
+                 from_of(expr)});
 }
 
 rubric::ReqId rule_of(const std::string& id) {
@@ -136,7 +140,9 @@ class BuiltTables::Builder {
   reflect::Expr expr(const ExprPtr& tree) {
     if (!tree) return {};
     const auto steps = postfix(*tree);
-    return {list(steps), few(steps)};
+    const bool floats =
+        std::any_of(steps.begin(), steps.end(), [](const auto& step) { return step.from != 0; });
+    return {list(steps), few(steps), floats};
   }
 
   reflect::Valid valid(const Field& field) {
