@@ -54,13 +54,14 @@ islands:
         mote = self.started("mote", "--id", "5", "--radio", air, "--app", "-")
         mote.call("join", type=1, transducers=1, actuators=1)
         mote.event("joined", success=True)
-        # The one that is later may have nothing to answer to a mote that has joined, but each acks
-        # what is for it.
         for _ in range(5):
             mote.call("send", dest="11:1", app_id=10, reliable=True, data="0a")
             mote.event("ack_received")
+        # Neither ends before both have said so: what one has heard of the other may come before
+        # its own first frame has gone, which waits for the air.
         for sink in (one, two):
             sink.waits_for(rb"(sink11: another sink is on this air)")
+        for sink in (one, two):
             self.assertEqual(sink.end()[0], 0)
 
     def test_a_port_that_another_program_holds(self):
