@@ -378,7 +378,8 @@ class Space(LiveTest):
             subscriber.event(event="received", src=mote)
         silent.process.kill()
         subprocess.run([*self.broker.client("mosquitto_pub"), "-q", "1", "-t",
-                        "rubicon/11/motes/5/set", "-l"], input=12 * b'{"command":"a"}\n', check=True)
+                        "rubicon/11/motes/5/set", "-l"],
+                       input=12 * b'{"command":"a"}\n', check=True)
         self.broker.publish("rubicon/11/motes/6/set", '{"command":"a","id":"other"}')
         subscriber.event(event="sent", id="other")
         told = [payload["data"]["event"] for _, _, payload in subscriber.seen]
