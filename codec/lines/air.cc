@@ -90,22 +90,31 @@ void Air::send(Bytes datagram) {
   }
 }
 
-void Air::note(const SocketAddress& from) {
+void Air::note(const SocketAddress& from, bool greets) {
   const SteadyTime now = steady_clock::now();
   const auto known = std::find_if(peers_.begin(), peers_.end(),
                                   [&](const Peer& peer) { return same_end(peer.address, from); });
   if (known != peers_.end()) {
     known->heard = now;
+    known->greets |= greets;
     return;
   }
   if (peers_.size() == kPeersMax) {
     peers_.erase(std::min_element(peers_.begin(), peers_.end(),
                                   [](const Peer& a, const Peer& b) { return a.heard < b.heard; }));
   }
-  peers_.push_back({from, now});
+  peers_.push_back({from, now, greets});
+}
+
+// The port of one that has gone may become that of another air's hub, which would pass on there
+// what it is sent.
+void Air::forget_the_gone() {
+  const SteadyTime since = steady_clock::now() - forgets_after_;
+  std::erase_if(peers_, [&](const Peer& peer) { return peer.greets && peer.heard < since; });
 }
 
 void Air::relay(Bytes datagram, const SocketAddress* from) {
+  forget_the_gone();
   for (const Peer& peer : peers_) {
     if (from != nullptr && same_end(peer.address, *from)) continue;
     ::sendto(socket_.get(), datagram.data(), datagram.size(), MSG_NOSIGNAL, peer.address.get(),
@@ -130,10 +139,10 @@ int Air::take_arrived() {
         ::recvfrom(socket_.get(), room_.data(), room_.size(), 0, from.get(), &from.size_bytes);
     if (size < 0) return errno;
     const Bytes datagram(room_.data(), static_cast<std::size_t>(size));
-    if (is_hub_) note(from);
     const Result<ZepPacket> zep = parse_zep(datagram);
     is_answered_ = true;
     const bool greets = zep && zep->type == ZepPacket::Type::kAck;
+    if (is_hub_) note(from, greets);
     if (greets && is_hub_) {
       const std::string answer = greeting();
       ::sendto(socket_.get(), answer.data(), answer.size(), MSG_NOSIGNAL, from.get(),
@@ -151,6 +160,7 @@ int Air::take_arrived() {
 
 Bytes Air::receive(SteadyTime deadline, const Others& others) {
   while (true) {
+    if (steady_clock::now() >= next_greeting_) greet();
     const int error = take_arrived();
     if (!arrived_.empty()) {
       current_ = std::move(arrived_.front().bytes);
@@ -168,7 +178,6 @@ Bytes Air::receive(SteadyTime deadline, const Others& others) {
       throw Broken(std::strerror(error));
     }
     const SteadyTime now = steady_clock::now();
-    if (now >= next_greeting_) greet();
     if (now >= deadline) return {};
     const auto left = std::min(deadline, next_greeting_) - now;
     const auto left_ms = std::chrono::ceil<Milliseconds>(left).count();

@@ -18,7 +18,9 @@ namespace rubric::lines {
 /// when it has gone.
 class Air {
  public:
-  explicit Air(HostPort at) : at_(std::move(at)) {}
+  /// As a hub it forgets who has greeted it and does not any more for `forgets_after`.
+  explicit Air(HostPort at, Milliseconds forgets_after = Milliseconds(10'000))
+      : at_(std::move(at)), forgets_after_(forgets_after) {}
 
   /// Takes part. Port 0 always makes a hub. Throws Broken.
   void open();
@@ -42,6 +44,7 @@ class Air {
   struct Peer {
     SocketAddress address;
     SteadyTime heard;
+    bool greets;  // Boards of others may only listen, without a word.
   };
   struct Arrived {
     std::int64_t time_ns;
@@ -52,9 +55,11 @@ class Air {
   void greet();
   int take_arrived();
   void relay(Bytes datagram, const SocketAddress* from);
-  void note(const SocketAddress& from);
+  void note(const SocketAddress& from, bool greets);
+  void forget_the_gone();
 
   HostPort at_;
+  Milliseconds forgets_after_;
   Descriptor socket_;
   bool is_hub_ = false;
   std::vector<Peer> peers_;  // Of a hub.

@@ -1,9 +1,11 @@
 #include "codec/lines/air.h"
 
 #include <gtest/gtest.h>
+#include <sys/socket.h>
 
 #include <chrono>
 #include <string>
+#include <thread>
 
 #include "codec/containers/zep_packet.h"
 
@@ -54,6 +56,43 @@ TEST(Air, WhatIsAtHandComesInTheOrderOfItsStamps) {
   one.send(bytes_of(frame_of('C', kNoTime)));  // Now.
   EXPECT_EQ(next_three_of(hub), "ABC");
   EXPECT_EQ(next_three_of(listener), "ABC");
+}
+
+// Another program, perhaps the hub of another air, has the port of one that has gone.
+TEST(Air, AHubForgetsWhoHasGone) {
+  using std::chrono::steady_clock;
+  Air hub({"127.0.0.1", 0}, Milliseconds(20));
+  hub.open();
+  Descriptor member(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+  const SocketAddress to = resolve("127.0.0.1", hub.port(), true).front();
+  ASSERT_EQ(::connect(member.get(), to.get(), to.size_bytes), 0);
+  ZepPacket ack;
+  ack.type = ZepPacket::Type::kAck;
+  std::string greeting;
+  append_zep(ack, greeting);
+  const auto greets = [&] {
+    ASSERT_EQ(::send(member.get(), greeting.data(), greeting.size(), 0),
+              static_cast<ssize_t>(greeting.size()));
+    hub.receive(steady_clock::now());
+  };
+  const auto hears = [&] {
+    std::uint8_t room[256];
+    int frames = 0;
+    for (ssize_t size; (size = ::recv(member.get(), room, sizeof room, 0)) > 0;) {
+      const auto zep = parse_zep(Bytes(room, static_cast<std::size_t>(size)));
+      frames += zep && zep->type != ZepPacket::Type::kAck;
+    }
+    return frames;
+  };
+  greets();
+  hub.send(bytes_of(frame_of('A', kNoTime)));
+  EXPECT_EQ(hears(), 1);
+  std::this_thread::sleep_for(Milliseconds(40));
+  hub.send(bytes_of(frame_of('B', kNoTime)));
+  EXPECT_EQ(hears(), 0);
+  greets();
+  hub.send(bytes_of(frame_of('C', kNoTime)));
+  EXPECT_EQ(hears(), 1);
 }
 
 }  // namespace

@@ -72,7 +72,7 @@ class Node {
 
   /// Joins; ends in Application::joined, perhaps before this returns.
   void join(const Descriptor& descriptor);
-  /// Returns the sequence number, or kNoSeq if the message is refused.
+  /// Returns the sequence number, or kNoSeq if the message is refused; see refusal.h.
   uint16_t send(Address dest, uint8_t app_id, bool reliable, Bytes data);
   /// Switches the radio or the serial line.
   bool set_interface(Line line, bool on);
@@ -115,6 +115,10 @@ class Node {
   bool list_is_full() const { return admissions_.is_full(); }
   /// Returns whether the line's outgoing buffer takes no more, so that what is sent there is lost.
   bool is_full(Line line) const { return at(line).out_ring.count == at(line).out_ring.room; }
+  /// Return why `send` would refuse such a message now, and whether `received` would lose the
+  /// packet, which is to be passed on and finds no room; for programs that say so: refusal.h.
+  Refusal refusal(Address dest, bool reliable, size_t data_bytes) const;
+  bool finds_no_room(Line line, Bytes packet) const;
   /// Takes a mote that has left off a sink's list, as no message says goodbye; see silence.h.
   /// Returns false while its report to the base station is owed.
   bool forget(uint16_t devid) { return admissions_.forget(devid); }

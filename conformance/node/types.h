@@ -48,6 +48,16 @@ enum class Role : uint8_t { kMote, kSink, kBaseStation };
 enum class Line : uint8_t { kRadio, kSerial, kPeis };
 enum class Mode : uint8_t { kReliable, kPowerSave };
 enum class DataStatus : uint8_t { kNew, kOld, kUnknownChannel };
+/// Why a node does not send a message of its application.
+enum class Refusal : uint8_t {
+  kNone,
+  kTooLong,    ///< More than kAppDataMax bytes.
+  kNotJoined,  ///< It is a mote that is no member.
+  kNoWay,      ///< The message is for the node itself, or no line leads to all whom it is for.
+  kAwaiting,   ///< As many acks are awaited as can be.
+  kOff,        ///< The line is switched off.
+  kFull,       ///< The line's outgoing buffer is full.
+};
 
 /// Source devid in the upper, destination devid in the lower 16 bits.
 using ChannelId = uint32_t;

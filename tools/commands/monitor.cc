@@ -13,7 +13,6 @@
 #include "codec/lines/broken.h"
 #include "codec/lines/line.h"
 #include "codec/lines/stop.h"
-#include "codec/reflect/requirements.h"
 #include "codec/text/text.h"
 #include "conformance/check/input/read_packet.h"
 #include "conformance/check/judge/follow.h"
@@ -163,10 +162,9 @@ class LiveCheck {
       const check::Finding& finding = change.finding;
       if (finding.severity == check::Severity::kNote) continue;
       const bool withdrawn = change.what == check::Change::What::kWithdrawn;
-      board.add_news(fmt::format("{}{} {}, {}, {}: {}", withdrawn ? "WITHDRAWN " : "",
+      board.add_news(fmt::format("{}{} {}: {}", withdrawn ? "WITHDRAWN " : "",
                                  text::in_capitals(report::severity_name(finding.severity)),
-                                 reflect::requirement(finding.requirement).id, finding.node,
-                                 report::place_text(follow_.run(), finding.place),
+                                 report::heading_text(follow_.run(), finding),
                                  withdrawn ? change.why : finding.text),
                      run::wall_ms());
     }

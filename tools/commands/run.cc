@@ -163,9 +163,8 @@ int run_station(const RunOptions& options) {
   if (options.is_mote() && !calls) {
     station.add(mote.emplace(options.descriptor(), options.app == "demo"));
   }
-  // The proxy asks for readings, and knows which motes were asked to be silent.
   std::optional<run::RollCall> roll_call;
-  if (options.role == "base-station" && options.gone_after_s != 0) {
+  if (options.is_base_station() && options.gone_after_s != 0) {
     station.add(roll_call.emplace(setup.island, std::chrono::seconds(options.gone_after_s)));
   }
   std::unique_ptr<space::Gateway> gateway;

@@ -87,6 +87,11 @@ class Monitor(LiveTest):
         self.assertEqual(row[4], "1", "joins")
         self.assertRegex(table[-1], r"^Check: (pass|inconclusive), \d+ frames")
 
+    def test_a_finding_of_no_node(self):
+        mote = self.node("mote", "--id", 5, "--radio", "zep:0")
+        watch = self.started("zep:" + mote.waits_for(rb"zep:(\d+)\n"))
+        self.assertRegex(watch.until("J3-REPLY"), r"INCONCLUSIVE J3-REPLY, frame \d+ at ")
+
     def test_a_forwarder_with_a_broken_rule(self):
         server = Forwarder(self)
         watch = self.started(f"sf@127.0.0.1:{server.port}")

@@ -69,9 +69,20 @@ class Client(Lines):
 class Mote(Node):
     """A mote whose application is this test."""
 
+    def is_asked(self, times):
+        """It was asked so often whether it is there, by a message without data."""
+        for _ in range(times):
+            self.event("received", data="")
+
+    def told(self):
+        """The data of the next message that has any."""
+        while not (data := self.event("received")["data"]):
+            pass
+        return bytes.fromhex(data)
+
     def sampling(self):
         """The period and the sensors that the next read_updates asks for."""
-        data = bytes.fromhex(self.event("received")["data"])
+        data = self.told()
         if len(data) != 5 or data[0] != 36:
             raise AssertionError(data)
         mask = int.from_bytes(data[3:], "big")
@@ -147,7 +158,7 @@ class Proxy(ProxyTest):
         self.assertEqual(mote.sampling()[0], 0)
         self.assertEqual(self.asked.next(), "watch 1/1/8 0")
         two.say(command="OPEN_DOOR", device="11:5")
-        self.assertEqual(bytes.fromhex(mote.event("received")["data"]), b"OPEN_DOOR")
+        self.assertEqual(mote.told(), b"OPEN_DOOR")
         self.assertEqual(two.event("command"), {"event": "command", "device": "11:5",
                                                 "command": "OPEN_DOOR", "outcome": "done"})
         # A mote that went and came again is told anew.
@@ -219,14 +230,14 @@ class Alive(ProxyTest):
     forgetting = ()
 
     def quiet(self, client):
-        """A mote that was told to be silent, and was, for the time after which it is missed."""
+        """A mote that was told to be silent, and was, for more than the time of --gone-after."""
         client.say(subscribe="11:5", sensors=["light"], period_ms=500)
         mote = self.mote()
         self.assertEqual(mote.sampling(), (500, {"light"}))
         client.say(unsubscribe="11:5")
         self.assertEqual(mote.sampling()[0], 0)
         client.event("device", device="11:5")
-        self.proxy.event("mote_left")
+        mote.is_asked(3)  # After half of it each.
         client.say(subscribe="11:5", sensors=["temp"], period_ms=300)
         return mote
 
@@ -239,6 +250,14 @@ class Alive(ProxyTest):
         self.assertEqual(mote.sampling(), (300, {"temp"}))
         self.updates(mote)
         self.assertEqual(json.loads(client.next())["event"], "reading")
+
+    def test_a_mote_that_nobody_asks_for_readings_is_there(self):
+        client = Client(self, self.port)
+        mote = self.mote()
+        mote.is_asked(3)
+        client.say(command="OPEN_DOOR", device="11:5")
+        self.assertEqual(mote.told(), b"OPEN_DOOR")
+        self.assertEqual(client.event("command")["outcome"], "done")
 
     def test_a_command_without_an_answer(self):
         client = Client(self, self.port)
@@ -254,7 +273,9 @@ class Alive(ProxyTest):
     def test_a_mote_is_heard_again(self):
         client = Client(self, self.port)
         mote = self.mote()
+        mote.call("interface", link="radio", on=False)
         client.event("left", device="11:5")
+        mote.call("interface", link="radio", on=True)
         client.say(subscribe="11:5", sensors=["temp"], period_ms=300)
         self.updates(mote)
         self.assertEqual(client.event("device", device="11:5")["sensors"], ["light", "temp"])

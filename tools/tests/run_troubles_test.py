@@ -46,6 +46,29 @@ islands:
             rb"sink11: (\d+) messages from the serial line were dropped")), 0)
         self.assertEqual(sink.end()[0], 0)
 
+    def why(self, node, **what):
+        """Why a message is refused."""
+        node.call("send", **{"dest": "11:1", "app_id": 10, "reliable": False, "data": "", **what})
+        return node.event("send_result", success=False)["why"]
+
+    def test_a_message_that_is_refused(self):
+        mote = self.started("mote", "--id", "5", "--radio", "zep:0", "--app", "-")
+        self.assertEqual(self.why(mote), "the mote has not joined")
+        self.assertEqual(self.why(mote, data=101 * "00"), "more than 100 bytes of data")
+        base = self.started("base-station", "--island", "11", "--sink", "sf@127.0.0.1:1", "--app",
+                            "-")
+        self.assertEqual(self.why(base, dest="11:65533"), "no line of this node leads there")
+        for _ in range(8):
+            base.call("send", dest="11:5", app_id=10, reliable=True, data="")
+        self.assertEqual(self.why(base, reliable=True),
+                         "as many acknowledgements are awaited as can be")
+        sink = self.started("sink", "--island", "11", "--radio", "zep:0", "--app", "-")
+        for _ in range(8):
+            sink.call("send", dest="11:5", app_id=10, reliable=False, data="")
+        self.assertEqual(self.why(sink, dest="11:5"), "the outgoing buffer is full")
+        sink.call("interface", link="radio", on=False)
+        self.assertEqual(self.why(sink, dest="11:5"), "the line is switched off")
+
     def test_two_sinks_on_an_air(self):
         one = self.started("sink", "--island", "11", "--radio", "zep:0")
         air = "zep:" + one.waits_for(rb"zep:(\d+)\n")
@@ -54,13 +77,14 @@ islands:
         mote = self.started("mote", "--id", "5", "--radio", air, "--app", "-")
         mote.call("join", type=1, transducers=1, actuators=1)
         mote.event("joined", success=True)
-        # The one that is later may have nothing to answer to a mote that has joined, but each acks
-        # what is for it.
         for _ in range(5):
             mote.call("send", dest="11:1", app_id=10, reliable=True, data="0a")
             mote.event("ack_received")
+        # Neither ends before both have said so: what one has heard of the other may come before
+        # its own first frame has gone, which waits for the air.
         for sink in (one, two):
             sink.waits_for(rb"(sink11: another sink is on this air)")
+        for sink in (one, two):
             self.assertEqual(sink.end()[0], 0)
 
     def test_a_port_that_another_program_holds(self):

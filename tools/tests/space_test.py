@@ -368,6 +368,23 @@ class Space(LiveTest):
         self.assertEqual(came + dropped, count, said)
         self.assertGreater(came, 200)
 
+    def test_wishes_wait_while_a_mote_does_not_answer(self):
+        """A base station awaits eight acknowledgements at once."""
+        subscriber = Subscriber(self, self.broker, "rubicon/11/events")
+        _, air = self.island(11)
+        silent = self.mote(5, air)
+        self.mote(6, air)
+        for mote in ("11:5", "11:6"):
+            subscriber.event(event="received", src=mote)
+        silent.process.kill()
+        subprocess.run([*self.broker.client("mosquitto_pub"), "-q", "1", "-t",
+                        "rubicon/11/motes/5/set", "-l"],
+                       input=12 * b'{"command":"a"}\n', check=True)
+        self.broker.publish("rubicon/11/motes/6/set", '{"command":"a","id":"other"}')
+        subscriber.event(event="sent", id="other")
+        told = [payload["data"]["event"] for _, _, payload in subscriber.seen]
+        self.assertEqual((told.count("sent"), told.count("refused")), (13, 0))
+
     def test_goodbyes_to_a_broker_that_hangs(self):
         """Those of several islands take as long as that of one."""
         def ends(count):

@@ -117,13 +117,7 @@ class TextReport {
 
   std::string heading(std::size_t i) const {
     const Finding& finding = story_.report.findings[i];
-    return fmt::format("{}, {}{}{}", trace_id(finding.requirement),
-                       finding.node.empty() ? std::string() : finding.node + ", ",
-                       place_text(story_.run, finding.place), times_text(finding));
-  }
-
-  static std::string_view trace_id(ReqId id) {
-    return id == ReqId::kNone ? std::string_view("(no rule)") : reflect::requirement(id).id;
+    return heading_text(story_.run, finding) + times_text(finding);
   }
 
   std::string head(std::size_t i) const {
@@ -264,7 +258,7 @@ class TextReport {
         if (n >= kLinesOfRule && group.size() > kLinesOfRule + 1) {
           const bool listed = !options_.verbose && group.size() <= options_.findings_max;
           out_ += fmt::format("{}and {} more of {} ({})\n", text::kIndent, group.size() - n,
-                              trace_id(finding.requirement),
+                              rule_text(finding.requirement),
                               listed ? "--verbose lists them" : "--max-findings N shows N in full");
           break;
         }

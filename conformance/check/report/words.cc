@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "codec/reflect/requirements.h"
+
 namespace rubric::report {
 std::string_view severity_name(check::Severity severity) {
   switch (severity) {
@@ -33,6 +35,15 @@ std::string place_text(const check::Run& run, const check::Place& place) {
   }
   if (place.time_us >= 0) out += " at " + text::seconds_text(place.time_us) + " s";
   return out;
+}
+
+std::string_view rule_text(ReqId id) {
+  return id == ReqId::kNone ? std::string_view("(no rule)") : reflect::requirement(id).id;
+}
+
+std::string heading_text(const check::Run& run, const check::Finding& finding) {
+  return fmt::format("{}, {}{}{}", rule_text(finding.requirement), finding.node,
+                     finding.node.empty() ? "" : ", ", place_text(run, finding.place));
 }
 
 }  // namespace rubric::report

@@ -18,4 +18,8 @@ std::string_view verdict_name(check::Verdict verdict);
 /// Returns "frame 12 at 3.842100 s", "frame 12 of b.pcapng at ..." in a run of several files, "the
 /// end of the run" if no frame is meant.
 std::string place_text(const check::Run& run, const check::Place& place);
+/// Returns the id of a rule; "(no rule)" for a finding by none.
+std::string_view rule_text(ReqId id);
+/// Returns "J4-SEQ, mote 5, frame 12 at 3.842100 s", without a node where none is known.
+std::string heading_text(const check::Run& run, const check::Finding& finding);
 }  // namespace rubric::report

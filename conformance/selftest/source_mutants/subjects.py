@@ -26,8 +26,10 @@ SUBJECTS = {
     "machine": Subject("conformance/machine", ("*.cc", "*.h"),
                        ("hash.cc", "ticks.h", "event.h", "machine_bench.cc"),
                        scope="rubric::machine"),
-    # serial_port.h is the serial stack of boards, below what rct/1 sees; the others are sizes.
-    "cpp": Subject("conformance/node", ("*.h",), ("serial_port.h", "memory.h", "sizes.h"),
+    # serial_port.h is the serial stack of boards, below what rct/1 sees; refusal.h is for `rubric
+    # run`; the others are sizes.
+    "cpp": Subject("conformance/node", ("*.h",),
+                   ("serial_port.h", "refusal.h", "memory.h", "sizes.h"),
                    unit="silence.h",
                    scope="rubric::node"),
     "python": Subject("conformance/adapters/python", ("*.py",), as_it_is=("adapter.py", "words.py"),

@@ -46,7 +46,7 @@ bool MoteNetwork::is_there(std::uint16_t mote) const {
 void MoteNetwork::happened(const machine::Notice& notice, run::Caller& caller) {
   caller_ = &caller;
   if (const auto* message = std::get_if<machine::Received>(&notice)) received(*message);
-  if (const auto* left = std::get_if<machine::MoteLeft>(&notice)) missed(left->address.devid);
+  if (const auto* left = std::get_if<machine::MoteLeft>(&notice)) leave(left->address.devid);
   const auto* ack = std::get_if<machine::AckReceived>(&notice);
   const auto found = ack ? awaited_.find(ack->seq_num) : awaited_.end();
   if (found == awaited_.end()) return;
@@ -56,30 +56,16 @@ void MoteNetwork::happened(const machine::Notice& notice, run::Caller& caller) {
 }
 
 void MoteNetwork::confirmed(const Request& request, bool success) {
-  const auto found = motes_.find(request.mote);
-  const bool there = found != motes_.end() && found->second.there;
-  const bool again = there && !success && request.tries < kTriesMax && send(request).empty();
+  const bool again =
+      !success && is_there(request.mote) && request.tries < kTriesMax && send(request).empty();
   if (!request.samples && !again) above_.answered(request.command, success);
-  if (!there || again) return;
-  Member& member = found->second;
-  if (success) {
-    if (request.samples) member.silenced = request.silences;
-  } else if (member.missed && request.tries >= kTriesMax) {
-    leave(request.mote, member);
-  }
-}
-
-void MoteNetwork::missed(std::uint16_t mote) {
-  const auto found = motes_.find(mote);
-  if (found == motes_.end()) return;
-  found->second.missed = true;
-  // One that was told to be silent may well be there. If not, its next request fails.
-  if (!found->second.silenced) leave(mote, found->second);
 }
 
 // A mote that is alive does not join again, so its description is kept until it is heard again.
-void MoteNetwork::leave(std::uint16_t mote, Member& member) {
-  if (std::exchange(member.there, false)) above_.left(device_of(mote));
+void MoteNetwork::leave(std::uint16_t mote) {
+  const auto found = motes_.find(mote);
+  if (found == motes_.end() || !std::exchange(found->second.there, false)) return;
+  above_.left(device_of(mote));
 }
 
 void MoteNetwork::received(const machine::Received& message) {
@@ -91,7 +77,6 @@ void MoteNetwork::received(const machine::Received& message) {
                      view->msg_type() == rubicon::AmType::kSerialJoined;
   if (joins && static_cast<std::uint16_t>(view->mote_addr()) != mote) return;
   Member& member = motes_[mote];
-  member.missed = false;
   bool news = !std::exchange(member.there, true) || joins;
   std::string state;
   if (joins) {
@@ -99,7 +84,6 @@ void MoteNetwork::received(const machine::Received& message) {
                               view->transducers().raw()};
     member.sensors = set_of(run::transducer_names(member.mote.descriptor.transducers));
     member.described = true;
-    member.silenced = false;
   } else {
     state = space::state_data(member.mote, message.app_id, message.data);
   }
@@ -122,8 +106,7 @@ void MoteNetwork::sample(const std::string& device, const Sampling& wanted) {
   const std::uint32_t period =
       wanted.period_ms == 0 ? 0 : std::clamp(wanted.period_ms, kShortestMs, kLongestMs);
   const nlohmann::json wish = {{"sampling_ms", period}, {"transducers", wanted.sensors}};
-  const Request request{mote_of(device), wish.dump(), true, period == 0, 0, 0};
-  if (period != 0) motes_[request.mote].silenced = false;
+  const Request request{mote_of(device), wish.dump(), true, 0, 0};
   unsent_.erase(request.mote);
   if (!send(request).empty()) unsent_[request.mote] = request;
 }
@@ -138,7 +121,7 @@ lines::SteadyTime MoteNetwork::run() {
 
 std::string MoteNetwork::command(const std::string& device, const std::string& text,
                                  std::uint64_t number) {
-  return send({mote_of(device), nlohmann::json{{"command", text}}.dump(), false, false, 0, number});
+  return send({mote_of(device), nlohmann::json{{"command", text}}.dump(), false, 0, number});
 }
 
 std::string MoteNetwork::send(const Request& request) {
@@ -156,7 +139,7 @@ std::string MoteNetwork::send(const Request& request) {
   send.data = Bytes(wish.data.data(), wish.data.size());
   const auto result = caller_->call(send);
   const std::uint16_t number = std::get<machine::SendResult>(*result).seq_num;
-  if (number == machine::kNoSeq) return "the outgoing buffer is full";
+  if (number == machine::kNoSeq) return run::refusal_text(caller_->refusal(send));
   Request& awaited = awaited_[number] = request;
   ++awaited.tries;
   return {};

@@ -30,7 +30,6 @@ class MoteNetwork final : public Network {
     std::uint16_t mote = 0;
     std::string wish;
     bool samples = false;
-    bool silences = false;  // Asks for no readings.
     int tries = 0;
     std::uint64_t command = 0;  // The caller's number.
   };
@@ -39,13 +38,10 @@ class MoteNetwork final : public Network {
     bool described = false;         // It has joined since the proxy began.
     std::set<std::string> sensors;  // Of its description; else those that it was heard to read.
     bool there = false;             // As the clients know.
-    bool silenced = false;          // It has confirmed that it is to send nothing.
-    bool missed = false;            // Nothing was heard of it for the stated time.
   };
   std::string device_of(std::uint16_t mote) const;
   bool is_there(std::uint16_t mote) const;
-  void missed(std::uint16_t mote);
-  void leave(std::uint16_t mote, Member& member);
+  void leave(std::uint16_t mote);
   void received(const machine::Received& message);
   void confirmed(const Request& request, bool success);
   /// Sends what a wish of the tuple space means. Returns why not; empty if it was sent.

@@ -5,6 +5,7 @@
 
 #include "codec/lines/time.h"
 #include "conformance/machine/event.h"
+#include "conformance/node/types.h"
 
 namespace rubric::run {
 
@@ -13,6 +14,8 @@ class Caller {
  public:
   /// Returns the call's result; nothing for joinIsland, which ends in Joined.
   virtual std::optional<machine::Notice> call(const machine::Call& call) = 0;
+  /// Returns why such a message would be refused now, if the node's layer knows.
+  virtual node::Refusal refusal(const machine::Send& send) const = 0;
 
  protected:
   ~Caller() = default;

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "codec/reflect/encode.h"
+#include "tools/commands/run/names.h"
 #include "tools/format/put.h"
 
 namespace rubric::run {
@@ -268,7 +269,13 @@ void JsonApplication::call(const std::string& line, Caller& caller) {
     const machine::Call call = call_of(with.text("call"), with, data);
     with.check_all_known();
     const auto answer = caller.call(call);
-    if (answer) print(json_line(*answer, ends_.node));
+    if (!answer) return;
+    Json event = std::visit(EventOf(), *answer);
+    const auto* const sent = std::get_if<machine::SendResult>(&*answer);
+    if (sent != nullptr && sent->seq_num == machine::kNoSeq) {
+      event["why"] = refusal_text(caller.refusal(std::get<machine::Send>(call)));
+    }
+    print(line_of(event, ends_.node));
   } catch (const std::invalid_argument& error) {
     print_error(error.what());
   } catch (const Json::exception& error) {

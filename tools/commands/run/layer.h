@@ -41,6 +41,8 @@ class Layer {
   virtual std::size_t full_list() const { return 0; }
   /// Returns how many messages of the serial line a sink has dropped, as its radio was behind.
   virtual std::size_t dropped() const { return 0; }
+  /// Returns why such a message would be refused now, if the layer knows.
+  virtual node::Refusal refusal(const machine::Send&) const { return node::Refusal::kNone; }
 };
 
 }  // namespace rubric::run

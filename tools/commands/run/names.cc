@@ -9,6 +9,7 @@
 #include "codec/reflect/decode.h"
 #include "codec/reflect/encode.h"
 #include "codec/reflect/registry.h"
+#include "conformance/node/sizes.h"
 
 namespace rubric::run {
 namespace {
@@ -104,6 +105,20 @@ const reflect::Unit* unit_of(const std::string& transducer) {
     if (transducer == type.fields[i].name) return type.fields[i].unit;
   }
   return nullptr;
+}
+
+std::string refusal_text(node::Refusal refusal) {
+  switch (refusal) {
+    case node::Refusal::kNone: break;
+    case node::Refusal::kTooLong:
+      return fmt::format("more than {} bytes of data", node::kAppDataMax);
+    case node::Refusal::kNotJoined: return "the mote has not joined";
+    case node::Refusal::kNoWay: return "no line of this node leads there";
+    case node::Refusal::kAwaiting: return "as many acknowledgements are awaited as can be";
+    case node::Refusal::kOff: return "the line is switched off";
+    case node::Refusal::kFull: return "the outgoing buffer is full";
+  }
+  return "the node refused it";
 }
 
 }  // namespace rubric::run

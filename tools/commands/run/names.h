@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "codec/reflect/schema.h"
+#include "conformance/node/types.h"
 
 namespace rubric::run {
 
@@ -25,5 +26,8 @@ std::vector<std::string> actuator_names(std::uint8_t bits);
 
 /// Returns the unit of a telosb's readings of a sensor; null if they are raw. (demo_data)
 const reflect::Unit* unit_of(const std::string& transducer);
+
+/// Returns in words why a message was refused.
+std::string refusal_text(node::Refusal refusal);
 
 }  // namespace rubric::run

@@ -1,7 +1,5 @@
 #include "tools/commands/run/own_layer.h"
 
-#include "codec/generated/rubicon/net_msg.h"
-#include "codec/generated/tinyos/am_header.h"
 #include "conformance/machine/messages.h"
 
 namespace rubric::run {
@@ -110,26 +108,20 @@ std::optional<node::Ticks> OwnLayer::run(node::Ticks now) {
   return runs ? std::optional(due) : std::nullopt;
 }
 
-// Returns whether a sink is to pass this on and its radio takes no more. A mote's node has no
-// memory to count in.
-bool OwnLayer::finds_no_room(node::Line line, Bytes packet) const {
-  if (role_ != node::Role::kSink || line != node::Line::kSerial) return false;
-  const auto header = tinyos::AmHeaderView::parse(packet);
-  if (!header || header->type() != node::kAmNet || !node_.is_full(node::Line::kRadio)) return false;
-  const auto message = rubicon::NetMsgView::parse(packet.from(node::kAmHeaderBytes));
-  if (!message) return false;
-  const node::Address dest = node::address_of(message->dest());
-  return dest.devid != node::kNullDevid && dest.devid != node::kSinkId;
-}
-
 void OwnLayer::received(node::Line line, Bytes packet) {
-  if (finds_no_room(line, packet)) ++dropped_;
+  // A mote's node has no memory to count in.
+  const bool counts = role_ == node::Role::kSink && line == node::Line::kSerial;
+  if (counts && node_.finds_no_room(line, packet)) ++dropped_;
   node_.received(line, packet);
   silence_.received(node_, role_, line, packet, now_);
 }
 
 std::optional<machine::Notice> OwnLayer::call(const machine::Call& call) {
   return std::visit(Performer(node_), call);
+}
+
+node::Refusal OwnLayer::refusal(const machine::Send& send) const {
+  return node_.refusal(wire_address(send.dest), send.reliable, send.data.size());
 }
 
 void OwnLayer::transmit(node::Line line, Bytes packet, bool link_ack) {

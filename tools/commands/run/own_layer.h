@@ -2,6 +2,7 @@
 #pragma once
 
 #include "conformance/node/node.h"
+#include "conformance/node/refusal.h"
 #include "conformance/node/silence.h"
 #include "tools/commands/run/layer.h"
 
@@ -20,9 +21,9 @@ class OwnLayer final : public Layer, private node::Driver, private node::Applica
   std::uint16_t island() const override { return node_.address().pid; }
   std::size_t full_list() const override { return node_.list_is_full() ? node_.members() : 0; }
   std::size_t dropped() const override { return dropped_; }
+  node::Refusal refusal(const machine::Send& send) const override;
 
  private:
-  bool finds_no_room(node::Line line, Bytes packet) const;
   // node::Driver
   void transmit(node::Line line, Bytes packet, bool link_ack) override;
   // node::Application

@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "conformance/machine/messages.h"
+#include "conformance/node/sizes.h"
 #include "conformance/node/types.h"
 
 namespace rubric::run {

@@ -74,6 +74,7 @@ class Station final : private LayerUser, public Caller {
   void run(const std::function<bool()>& stop);
 
   std::optional<machine::Notice> call(const machine::Call& call) override;
+  node::Refusal refusal(const machine::Send& send) const override { return layer_->refusal(send); }
 
  private:
   // LayerUser

@@ -205,29 +205,30 @@ void Gateway::take_wish(const Tuple& tuple, std::uint16_t mote) {
   refuse(tuple.key, wrong);
 }
 
-// Gives the serial line no more wishes than the sink's radio can send.
+// Gives the serial line no more wishes than the sink's radio can send. They wait, too, while as
+// many acknowledgements are awaited as can be.
 void Gateway::give_wishes(run::Caller& caller) {
   const auto now = steady_clock::now();
-  while (!wishes_.empty() && all_sent_ <= now + kWishesAhead) {
-    const Waiting waiting = std::move(wishes_.front());
-    wishes_.pop_front();
-    const Wish& wish = waiting.wish;
+  for (; !wishes_.empty() && all_sent_ <= now + kWishesAhead; wishes_.pop_front()) {
+    const auto& [mote, key, wish] = wishes_.front();
     machine::Send send;
-    send.dest = {settings_.island, waiting.mote};
+    send.dest = {settings_.island, mote};
     send.app_id = wish.app_id;
     send.reliable = wish.reliable;
     send.data = Bytes(wish.data.data(), wish.data.size());
+    const node::Refusal refusal = caller.refusal(send);
+    if (refusal == node::Refusal::kAwaiting || refusal == node::Refusal::kFull) return;
     const auto result = caller.call(send);
     const std::uint16_t number = std::get<machine::SendResult>(*result).seq_num;
     if (number == machine::kNoSeq) {
-      const std::string wrong = "the outgoing buffer is full";
-      put_event(wish_event("refused", waiting.mote, wish.id, wrong));
-      refuse(waiting.key, wrong);
+      const std::string wrong = run::refusal_text(refusal);
+      put_event(wish_event("refused", mote, wish.id, wrong));
+      refuse(key, wrong);
       continue;
     }
     all_sent_ = std::max(all_sent_, now) + kWishTime;
-    put_event(wish_event("sent", waiting.mote, wish.id, ""));
-    if (wish.reliable) awaited_[number] = {waiting.mote, wish.id};
+    put_event(wish_event("sent", mote, wish.id, ""));
+    if (wish.reliable) awaited_[number] = {mote, wish.id};
   }
 }
 
