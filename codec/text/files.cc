@@ -89,6 +89,10 @@ int OutFile::finish() {
   if (fd_ <= STDERR_FILENO) return 0;
   // A full disk may show only here.
   int error = !beside_.empty() && ::fsync(fd_) != 0 ? errno : 0;
+  struct stat is {};
+  // What somebody has deleted meanwhile went nowhere.
+  const bool gone = ::fstat(fd_, &is) == 0 && S_ISREG(is.st_mode) && is.st_nlink == 0;
+  if (error == 0 && gone) error = ENOENT;
   if (::close(fd_) != 0 && error == 0) error = errno;
   fd_ = -1;
   if (error != 0 || beside_.empty()) return error;

@@ -34,8 +34,8 @@ class OutFile {
   OutFile& operator=(const OutFile&) = delete;
 
   int fd() const { return fd_; }
-  /// Closes the file and, with kWhole, gives it its name. Returns 0, or the error as in errno;
-  /// then an old file is as it was.
+  /// Closes the file and, with kWhole, gives it its name. Returns 0, or the error as in errno,
+  /// ENOENT if the file was deleted meanwhile; then an old file is as it was.
   int finish();
 
  private:

@@ -196,8 +196,8 @@ std::string harmless(std::string_view text, Keep keep) {
   return out;
 }
 
-void print_harmless(std::FILE* file, std::string_view text) {
-  const std::string out = harmless(text, Keep::kLines);
+void print_harmless(std::FILE* file, std::string_view lines) {
+  const std::string out = harmless(lines, Keep::kLines);
   const bool is_whole = std::fwrite(out.data(), 1, out.size(), file) == out.size();
   // It is lost, since an exception would end the program when a thread reports something.
   if (is_whole || file == stderr) return;

@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <string>
 #include <string_view>
-#include <utility>
+#include <type_traits>
 
 namespace rubric::text {
 
@@ -66,12 +66,25 @@ enum class Keep : std::uint8_t { kNone, kLines };
 /// expectations, notes.
 std::string harmless(std::string_view text, Keep keep = Keep::kNone);
 
-/// Prints text for people to a file, harmless; see fmt::print(). Throws std::system_error if that
-/// cannot be written; what stderr does not take is lost.
-void print_harmless(std::FILE* file, std::string_view text);
+/// Prints lines for people to a file, harmless. Throws std::system_error if that cannot be written;
+/// what stderr does not take is lost.
+void print_harmless(std::FILE* file, std::string_view lines);
+
+/// Returns a text harmless and without line ends, anything else as it is.
+template <class T>
+decltype(auto) in_one_line(const T& value) {
+  if constexpr (std::is_convertible_v<const T&, std::string_view>) {
+    return harmless(value);
+  } else {
+    return (value);
+  }
+}
+
+/// Prints the same of a format and texts that have no line ends: those in a name would begin a line
+/// that looks like one of ours. See fmt::print().
 template <class... Args>
-void print(std::FILE* file, fmt::format_string<Args...> format, Args&&... args) {
-  print_harmless(file, fmt::format(format, std::forward<Args>(args)...));
+void print(std::FILE* file, fmt::format_string<Args...> format, const Args&... args) {
+  print_harmless(file, fmt::vformat(format, fmt::make_format_args(in_one_line(args)...)));
 }
 
 }  // namespace rubric::text

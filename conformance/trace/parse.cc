@@ -288,11 +288,12 @@ class Parser {
 
 std::string Parsed::errors() const {
   std::string text;
+  const std::string name = text::harmless(file_name);
   for (const Diagnostic& one : diagnostics) {
-    text += file_name + ':' + std::to_string(one.place.line) + ':' +
-            std::to_string(one.place.column) + ": " + one.text + '\n';
+    text += name + ':' + std::to_string(one.place.line) + ':' + std::to_string(one.place.column) +
+            ": " + one.text + '\n';
   }
-  if (dropped) text += file_name + ": and " + std::to_string(dropped) + " more\n";
+  if (dropped) text += name + ": and " + std::to_string(dropped) + " more\n";
   return text;
 }
 

@@ -97,12 +97,13 @@ std::string Diagnostics::print(const std::map<Key, Diagnostic>& list, std::strin
     }
     ++shown;
     const SourcePlace& place = found.place;
+    std::string file = place.file;
+    std::replace(file.begin(), file.end(), '\n', '?');  // Else it would look like one more.
     if (place.line == 0) {
-      out += fmt::format("{}: {}: {}\n", place.file, kind, found.text);
+      out += fmt::format("{}: {}: {}\n", file, kind, found.text);
       continue;
     }
-    out +=
-        fmt::format("{}:{}:{}: {}: {}\n", place.file, place.line, place.column, kind, found.text);
+    out += fmt::format("{}:{}:{}: {}: {}\n", file, place.line, place.column, kind, found.text);
     if (!sources_.contains(place.file)) continue;
     const std::string_view line =
         first_line(source_from(place.file, place.line)).substr(0, kSourceLineMax);

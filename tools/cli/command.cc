@@ -301,9 +301,11 @@ const Command& Command::innermost() const {
   return *this;
 }
 
-int Command::complain(const std::string& what) const {
+int Command::complain(const std::string& what, const std::string& excerpt) const {
   const std::string full = parent_ ? parent_->name() + " " + name() : name();
-  text::print(stderr, "{}: {}\nTry '{} --help'.\n", full, what, full);
+  text::print(stderr, "{}: {}", full, what);
+  text::print_harmless(stderr, excerpt);
+  text::print(stderr, "\nTry '{} --help'.\n", full);
   return kExitUsage;
 }
 
@@ -340,7 +342,7 @@ int Command::parse_and_run(int argc, char** argv) {
   } catch (const Exit& exit) {
     return exit.code;
   } catch (const UsageError& error) {
-    return innermost().complain(error.what());
+    return innermost().complain(error.what(), error.excerpt());
   } catch (const CLI::ExtrasError&) {
     return innermost().complain_about_extras();
   } catch (const CLI::ParseError& error) {

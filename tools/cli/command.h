@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "tools/cli/exit_codes.h"
@@ -32,7 +33,13 @@ class UsageError : public Ending {
  public:
   explicit UsageError(const std::string& what) : Ending(what) {}
   /// Prints as "OPTION: what".
-  UsageError(const std::string& option, const std::string& what) : Ending(option + ": " + what) {}
+  UsageError(const std::string& option, const std::string& what, std::string excerpt = {})
+      : Ending(option + ": " + what), excerpt_(std::move(excerpt)) {}
+  /// Returns the lines below it, which show the place, each after a line end.
+  const std::string& excerpt() const { return excerpt_; }
+
+ private:
+  std::string excerpt_;
 };
 
 /// Returns what is wrong with an option's text, empty if nothing is.
@@ -127,7 +134,7 @@ class Command {
 
  private:
   const Command& innermost() const;
-  int complain(const std::string& what) const;
+  int complain(const std::string& what, const std::string& excerpt = {}) const;
   int complain_about_option(const std::string& bare) const;
   int complain_about_extras() const;
   std::vector<std::string> subcommand_names() const;

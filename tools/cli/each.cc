@@ -35,6 +35,7 @@ namespace fs = std::filesystem;
 constexpr int kGraver[] = {kExitClean, kExitIncomplete, kExitFindings, kExitInput,
                            kExitUsage, kExitOutput,     kExitBroken};
 
+constexpr std::string_view kLineBegin = R"({"schema":"rubric.each/1",)";
 constexpr std::size_t kAheadMax = 4096;  // Results that wait for an earlier one.
 // What is taken of a folder.
 constexpr std::string_view kExtensions[] = {".pcap",     ".pcapng", ".bin", ".sf",
@@ -71,14 +72,34 @@ struct OneRun {
   std::string name;
 };
 
-void add_folder(const std::string& folder, std::vector<OneRun>& out) {
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
-    const fs::path plain = text::name_unpacked(entry.path().native());
-    const std::string extension = plain.extension().string();
-    const bool wanted = std::find(std::begin(kExtensions), std::end(kExtensions), extension) !=
-                        std::end(kExtensions);
-    if (!wanted || !entry.is_regular_file()) continue;
-    out.push_back({entry.path().string(), fs::relative(entry.path(), folder).string()});
+bool is_wanted(const fs::path& file) {
+  const fs::path plain = text::name_unpacked(file.native());
+  const std::string extension = plain.extension().string();
+  return std::find(std::begin(kExtensions), std::end(kExtensions), extension) !=
+         std::end(kExtensions);
+}
+
+// What cannot be looked at, a folder too, is a run that cannot be read: it is not passed over.
+void add_folder(const fs::path& top, std::vector<OneRun>& out) {
+  const auto add = [&](const fs::path& path) {
+    out.push_back({path.string(), path.lexically_relative(top).string()});
+  };
+  std::vector<fs::path> folders = {top};
+  while (!folders.empty()) {
+    const fs::path folder = std::move(folders.back());
+    folders.pop_back();
+    std::error_code error;
+    fs::directory_iterator entry(folder, error);
+    for (; !error && entry != fs::directory_iterator(); entry.increment(error)) {
+      std::error_code unknown;
+      if (entry->symlink_status(unknown).type() == fs::file_type::directory) {
+        folders.push_back(entry->path());
+      } else if (is_wanted(entry->path()) &&
+                 (entry->is_regular_file(unknown) || !entry->exists(unknown))) {
+        add(entry->path());
+      }
+    }
+    if (error) add(folder);
   }
 }
 
@@ -87,7 +108,8 @@ void add_pattern(const std::string& pattern, std::vector<OneRun>& out) {
   if (::glob(pattern.c_str(), 0, nullptr, &found) == 0) {
     for (std::size_t i = 0; i < found.gl_pathc; ++i) {
       const std::string path = found.gl_pathv[i];
-      if (fs::is_directory(path)) {
+      std::error_code ignored;
+      if (fs::is_directory(path, ignored)) {
         add_folder(path, out);
       } else {
         out.push_back({path, fs::path(path).filename().string()});
@@ -135,13 +157,18 @@ std::string key_of(const EachJob& job, const std::string& file) {
 }
 
 // The results of earlier commands: a line each, {"key":"0123456789abcdef","run":{...}}. A line that
-// a kill cut short counts for nothing.
+// a kill cut short, or of another schema, counts for nothing.
 class State {
  public:
-  explicit State(const std::string& path) {
+  explicit State(const std::string& path) : path_(path) {
     if (path.empty()) return;
     fd_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
-    if (fd_ < 0) throw std::system_error(errno, std::generic_category(), path);
+    struct stat is {};
+    if (fd_ < 0 || ::fstat(fd_, &is) != 0) {
+      exit_with(cannot_write(std::system_error(errno, std::generic_category(), path)));
+    }
+    // Others have no end, or forget.
+    if (!S_ISREG(is.st_mode)) throw UsageError("--resume", path + " is not a file");
     if (::flock(fd_, LOCK_EX | LOCK_NB) != 0) {
       throw UsageError("--resume", path + " is in use by another command");
     }
@@ -158,11 +185,12 @@ class State {
     return at == known_.end() ? nullptr : &at->second;
   }
 
-  // Returns whether the line is on its way to the disk.
-  bool add(const std::string& key, const std::string& line) {
-    if (fd_ < 0 || key.empty()) return true;
-    return text::write_all(fd_, kBefore + key + kBetween + line + "}\n") == 0;
+  void add(const std::string& key, const std::string& line) {
+    if (fd_ < 0 || key.empty() || failed_) return;
+    failed_ = !is_written(path_, text::write_all(fd_, kBefore + key + kBetween + line + "}\n"));
   }
+  // Returns whether a result could not be written.
+  bool failed() const { return failed_; }
 
  private:
   static constexpr std::size_t kKeyChars = 16;
@@ -184,7 +212,8 @@ class State {
     for (std::size_t end = 0; (end = text.find('\n', at)) != text.npos; at = end + 1) {
       const std::string_view line = std::string_view(text).substr(at, end - at);
       if (line.size() < head + 3 || !line.starts_with(kBefore) || !line.ends_with("}}") ||
-          line.substr(kBefore.size() + kKeyChars, kBetween.size()) != kBetween) {
+          line.substr(kBefore.size() + kKeyChars, kBetween.size()) != kBetween ||
+          !line.substr(head).starts_with(kLineBegin)) {
         if (at == 0) throw UsageError("--resume", path + " holds something else");
         continue;
       }
@@ -197,7 +226,9 @@ class State {
     if (at < text.size()) text::write_all(fd_, "\n");  // After a line that was cut short.
   }
 
+  const std::string path_;
   int fd_ = -1;
+  bool failed_ = false;
   std::map<std::string, std::string> known_;
 };
 
@@ -263,7 +294,8 @@ class Runs {
     Child child{i, key, memory_file(), memory_file()};
     output_.flush();  // Else both processes would write what waits.
     std::fflush(nullptr);
-    const pid_t pid = ::fork();
+    pid_t pid = 0;
+    while ((pid = ::fork()) < 0 && errno == EAGAIN && !children_.empty()) wait();
     if (pid < 0) throw std::system_error(errno, std::generic_category(), "fork");
     if (pid > 0) {
       children_[pid] = child;
@@ -304,7 +336,7 @@ class Runs {
       error += fmt::format("was killed by signal {}\n", WTERMSIG(status));
     }
     while (error.ends_with('\n')) error.pop_back();
-    std::string line = fmt::format(R"({{"schema":"rubric.each/1","file":{},"exit_code":{})",
+    std::string line = fmt::format(R"({}"file":{},"exit_code":{})", kLineBegin,
                                    text::json_string(runs_[child.run].file),
                                    killed ? kExitBroken : WEXITSTATUS(status));
     if (!members.empty()) line += "," + members;
@@ -312,10 +344,7 @@ class Runs {
     line += '}';
     // What broke may go well the next time.
     const bool lasts = !killed && (WEXITSTATUS(status) == 0 || !members.empty());
-    if (lasts && good_ && !state_.add(child.key, line)) {
-      text::print(stderr, "rubric {}: cannot write the file of --resume\n", job_.command);
-      state_failed_ = true;
-    }
+    if (lasts && good_) state_.add(child.key, line);
     finish(child.run, line);
   }
 
@@ -351,7 +380,7 @@ class Runs {
     }
     text::print(stderr, "rubric {}: {}{}{}\n", job_.command, text::counted(next_line_, "run"),
                 known_ == 0 ? "" : fmt::format(" ({} known by --resume)", known_), ends);
-    return !output_.finish() || state_failed_ ? kExitOutput : gravest;
+    return !output_.finish() || state_.failed() ? kExitOutput : gravest;
   }
 
   const EachJob& job_;
@@ -365,7 +394,6 @@ class Runs {
   std::map<int, std::size_t> counts_;  // By exit code.
   std::size_t known_ = 0;
   bool good_ = true;
-  bool state_failed_ = false;
 };
 
 }  // namespace
@@ -377,7 +405,7 @@ void add_each_options(Command& command, EachOptions& options) {
   command
       .add_option("--jobs", options.jobs,
                   "With --each, take this many runs at a time (default: cores)")
-      .check(at_least_one);
+      .between(std::uint64_t{1}, std::uint64_t{256});  // Each takes two descriptors.
   command
       .add_option("--resume", options.resume,
                   "With --each, keep results in this file, and skip runs whose results are there")

@@ -1,5 +1,7 @@
 #include "tools/cli/frame_filter.h"
 
+#include <algorithm>
+
 #include "tools/cli/command.h"
 
 namespace rubric::cli {
@@ -17,7 +19,9 @@ format::Filter filter_of(const std::string& expression, const reflect::Protocol&
       }
     };
     const std::string what = error.what() + spec_with(protocol, works);
-    throw UsageError("--filter", format::FilterError(what, error.position()).explain(expression));
+    const std::string lines = format::FilterError(what, error.position()).explain(expression);
+    const std::size_t first = std::min(lines.find('\n'), lines.size());
+    throw UsageError("--filter", lines.substr(0, first), lines.substr(first));
   }
 }
 

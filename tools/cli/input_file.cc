@@ -126,7 +126,9 @@ std::size_t InputFile::read_plain(std::uint8_t* to, std::size_t size) {
       return count;
     }
     if (got < 0 && errno != EINTR) throw std::system_error(errno, std::generic_category());
-    if (lines::stop_requested() || (got == 0 && !follow_)) return 0;
+    // Another writer may open a named pipe; what ends on stdin has ended.
+    const bool ended = got == 0 && (!follow_ || (is_stdin_ && !is_regular_));
+    if (lines::stop_requested() || ended) return 0;
     if (got == 0) wait();
   }
 }

@@ -21,8 +21,18 @@ bool is_written(const std::string& name, int error) {
   return error == 0;
 }
 
+namespace {
+
+std::unique_ptr<text::OutFile> opened(const std::string& path, Output::Mode mode) try {
+  return std::make_unique<text::OutFile>(path, mode);
+} catch (const std::system_error& error) {
+  exit_with(cannot_write(error));
+}
+
+}  // namespace
+
 Output::Output(const std::string& path, Mode mode)
-    : file_(std::make_unique<text::OutFile>(path, mode)),
+    : file_(opened(path, mode)),
       name_(path),
       fd_(file_->fd()),
       packer_(text::make_packer(text::packing_of_name(path))) {}

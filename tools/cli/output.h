@@ -19,8 +19,8 @@ class Output {
   using Mode = text::OutFile::Mode;
 
   explicit Output(int fd = 1) : fd_(fd) {}
-  /// Writes to a file, packed if its name ends in .gz or .zst; "-" is stdout. Throws
-  /// std::system_error. What was written to a kWhole file is gone unless finish() is called.
+  /// Writes to a file, packed if its name ends in .gz or .zst; "-" is stdout. Ends the command if
+  /// it cannot be opened. What was written to a kWhole file is gone unless finish() is called.
   Output(const std::string& path, Mode mode);
   ~Output() { flush(); }
   Output(const Output&) = delete;

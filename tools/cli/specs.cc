@@ -60,7 +60,7 @@ void add_requirements(rubricc::Model& model) {
 void require_sound(rubricc::Model& model, rubricc::Diagnostics& diagnostics,
                    rubricc::CheckFor what) {
   rubricc::check_model(model, diagnostics, what);
-  text::print(stderr, "{}{}", diagnostics.print_notes(), diagnostics.print());
+  text::print_harmless(stderr, diagnostics.print_notes() + diagnostics.print());
   if (!diagnostics.empty()) exit_with(kExitInput);
 }
 
@@ -202,7 +202,7 @@ void use_requirements_of(const std::string& file) {
   static rubricc::Model kept;  // The rules point into it.
   rubricc::Diagnostics diagnostics;
   rubricc::load_requirements(file, kept, diagnostics, rubricc::Catalogue::kOther);
-  text::print(stderr, "{}", diagnostics.print());
+  text::print_harmless(stderr, diagnostics.print());
   if (!diagnostics.empty()) exit_with(kExitInput);
   std::vector<reflect::Requirement> rules = {reflect::requirements().front()};
   for (const rubricc::Requirement& one : kept.requirements) {
@@ -286,7 +286,7 @@ OtherSpecs::OtherSpecs(const reflect::Protocol& chosen) : chosen_(chosen) {
 void OtherSpecs::look_closer(const reflect::Frame& frame) {
   std::vector<Hint> hints;
   look_closer(frame, hints);
-  for (const Hint& hint : hints) text::print(stderr, "{}", hint.text);
+  for (const Hint& hint : hints) text::print_harmless(stderr, hint.text);
 }
 
 void OtherSpecs::look_closer(const reflect::Frame& frame, std::vector<Hint>& hints) {
@@ -301,7 +301,7 @@ void OtherSpecs::look_closer(const reflect::Frame& frame, std::vector<Hint>& hin
   if (others_.empty()) {
     static std::mutex reading;  // Read specs are kept in one place.
     const std::lock_guard lock(reading);
-    chosen_name_ = name_of(chosen_);
+    chosen_name_ = text::harmless(name_of(chosen_));
     const std::vector<std::string> chosen = specs_in(chosen_.id);
     for (const std::string& name : protocol_names()) {
       const bool is_chosen = std::find(chosen.begin(), chosen.end(), name) != chosen.end();

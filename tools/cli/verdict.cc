@@ -24,9 +24,9 @@ void set_verdict(Command& command, std::function<int()> run) {
   });
 }
 
-void unreadable(std::string what) {
-  while (what.ends_with('\n')) what.pop_back();
-  text::print(stderr, "rubric: {}\n", what);
+void unreadable(const std::string& what) {
+  text::print_harmless(stderr,
+                       "rubric: " + (what.ends_with('\n') ? what : text::harmless(what) + '\n'));
   exit_with(kExitInput);
 }
 

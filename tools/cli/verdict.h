@@ -12,8 +12,9 @@ namespace rubric::cli {
 /// Ending is printed, and means that the kit broke.
 void set_verdict(Command& command, std::function<int()> run);
 
-/// Ends the subcommand because its input cannot be read. `what` may be a list of lines.
-[[noreturn]] void unreadable(std::string what);
+/// Ends the subcommand because its input cannot be read. `what` is a line without its end, or lines
+/// with theirs, in which names have none.
+[[noreturn]] void unreadable(const std::string& what);
 /// Returns a whole file, or stdin for "-"; ends the subcommand if that cannot be read.
 std::string text_of_file(const std::string& path);
 

@@ -2,7 +2,6 @@
 #include <filesystem>
 #include <map>
 #include <memory>
-#include <system_error>
 
 #include "codec/text/packed.h"
 #include "codec/text/text.h"
@@ -141,37 +140,32 @@ int run_convert(const ConvertOptions& options) {
   cli::FrameFilter filter(options.filter, cli::chosen_protocol(options.input));
   Losses losses;
   const encode::Holds holds = encode::holds(options.format);
-  cli::InputResult result;
+  encode::PacketOutput output(options.format, options.output);
+  const auto on_packet = [&](const Packet& packet, const cli::Source& source) {
+    if (!options.only.empty() && format::framing_name(packet.framing) != options.only) {
+      return true;
+    }
+    if (cli::is_damage(packet)) return true;  // Said already, and no packet.
+    if (!filter.takes(packet, source.interface_name, source.number)) return true;
+    ++losses.packets;
+    const std::string refused = output.write(packet, source.interface_name);
+    if (output.cut_refused()) {
+      ++losses.refused["a frame that was cut can only be the last of a stream"];
+      --losses.written;
+    }
+    if (!refused.empty()) {
+      ++losses.refused[refused];
+      return true;
+    }
+    ++losses.written;
+    count_details(packet, source.interface_name, holds, options.format, losses);
+    return output.open();
+  };
+  const cli::InputResult result = cli::read_packets(options.input, on_packet);
+  losses.given_times = output.given_times();
   bool written = true;
-  try {
-    encode::PacketOutput output(options.format, options.output);
-    const auto on_packet = [&](const Packet& packet, const cli::Source& source) {
-      if (!options.only.empty() && format::framing_name(packet.framing) != options.only) {
-        return true;
-      }
-      if (cli::is_damage(packet)) return true;  // Said already, and no packet.
-      if (!filter.takes(packet, source.interface_name, source.number)) return true;
-      ++losses.packets;
-      const std::string refused = output.write(packet, source.interface_name);
-      if (output.cut_refused()) {
-        ++losses.refused["a frame that was cut can only be the last of a stream"];
-        --losses.written;
-      }
-      if (!refused.empty()) {
-        ++losses.refused[refused];
-        return true;
-      }
-      ++losses.written;
-      count_details(packet, source.interface_name, holds, options.format, losses);
-      return output.open();
-    };
-    result = cli::read_packets(options.input, on_packet);
-    losses.given_times = output.given_times();
-    // A mistyped name must not cost the file that would have been replaced.
-    if (!result.failed || losses.packets > 0) written = output.finish();
-  } catch (const std::system_error& error) {
-    return cli::cannot_write(error);
-  }
+  // A mistyped name must not cost the file that would have been replaced.
+  if (!result.failed || losses.packets > 0) written = output.finish();
   report(losses, options.format);
   if (!written) return cli::kExitOutput;
   return result.failed ? cli::kExitInput : cli::kExitClean;

@@ -13,7 +13,6 @@
 
 #include "codec/reflect/requirements.h"
 #include "codec/text/json.h"
-#include "codec/text/text.h"
 #include "conformance/explore/search.h"
 #include "conformance/selftest/mutants/hunt.h"
 #include "conformance/test/suite/cases.h"
@@ -21,6 +20,7 @@
 #include "tools/cli/command.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/output.h"
+#include "tools/cli/verdict.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/protocol_folder.h"
 
@@ -306,8 +306,7 @@ int run_coverage(const CoverageOptions& options) {
   } catch (const cli::Ending&) {
     throw;
   } catch (const std::exception& error) {
-    text::print(stderr, "rubric: {}\n", error.what());
-    return cli::kExitInput;
+    cli::unreadable(error.what());
   }
   const std::string text = options.format == "json" ? json_of(coverage) : text_of(coverage);
   if (!cli::write_file("-", text)) return cli::kExitOutput;

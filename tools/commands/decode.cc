@@ -278,7 +278,7 @@ class Decode {
 
   void say(const std::vector<cli::OtherSpecs::Hint>& hints) {
     for (const cli::OtherSpecs::Hint& hint : hints) {
-      if (said_.insert(hint.about).second) text::print(stderr, "{}", hint.text);
+      if (said_.insert(hint.about).second) text::print_harmless(stderr, hint.text);
     }
   }
 

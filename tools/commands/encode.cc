@@ -3,7 +3,6 @@
 #include <memory>
 #include <string>
 #include <string_view>
-#include <system_error>
 
 #include "tools/cli/exit_codes.h"
 #include "tools/commands/commands.h"
@@ -59,17 +58,13 @@ int run_encode(const EncodeOptions& options) {
   const reflect::Protocol& protocol = cli::chosen_protocol(options.lines.input);
   const reflect::Type* message = cli::chosen_message(options.lines.input, protocol);
   encode::LineEncoder encoder(options.lines, protocol, message, serial_framing(options.format));
-  try {
-    encode::PacketOutput output(options.format, options.output);
-    bool any = false;
-    const bool good = write_all(options, encoder, output, any);
-    // A mistyped name must not cost the file that would have been replaced.
-    if (!good && !any) return cli::kExitInput;
-    if (!output.finish()) return cli::kExitOutput;
-    return good ? cli::kExitClean : cli::kExitInput;
-  } catch (const std::system_error& error) {
-    return cli::cannot_write(error);
-  }
+  encode::PacketOutput output(options.format, options.output);
+  bool any = false;
+  const bool good = write_all(options, encoder, output, any);
+  // A mistyped name must not cost the file that would have been replaced.
+  if (!good && !any) return cli::kExitInput;
+  if (!output.finish()) return cli::kExitOutput;
+  return good ? cli::kExitClean : cli::kExitInput;
 }
 
 }  // namespace

@@ -355,7 +355,7 @@ void run_explore(const ExploreOptions& options) {
   if (options.format == "json") {
     good = cli::write_file("-", json_of(options, result, verdict, text)) && good;
   } else if (trace_alone) {
-    text::print(stderr, "{}", text_of(result, verdict));
+    text::print_harmless(stderr, text_of(result, verdict));
     good = cli::write_file("-", text) && good;
   } else {
     good = cli::write_file("-", text_of(result, verdict)) && good;

@@ -362,11 +362,7 @@ void add_generate(cli::Command& app) {
   sub.add_flag("--fields", options->fields, "Add each number of a valid frame to its expectation");
   sub.exit_code_of([options] {
     check_outputs(*options);
-    try {
-      return Run(*options, cli::chosen_protocol(options->input)).run();
-    } catch (const std::system_error& error) {
-      return cli::cannot_write(error);
-    }
+    return Run(*options, cli::chosen_protocol(options->input)).run();
   });
 }
 

@@ -215,7 +215,7 @@ class Send {
     }
     text += '\n';
     if (options_.format == "jsonl") {  // Its lines are the frames that come alone.
-      text::print(stderr, "{}", text);
+      text::print_harmless(stderr, text);
       return;
     }
     output_.buffer().append(text);

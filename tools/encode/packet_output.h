@@ -26,7 +26,7 @@ Holds holds(std::string_view container);
 /// Writes packets into a file that takes its name in finish(), even if no packet came.
 class PacketOutput {
  public:
-  /// `path`: a file, "-" is stdout. Throws std::system_error.
+  /// `path`: a file, "-" is stdout. Ends the command if it cannot be opened.
   PacketOutput(std::string_view container, const std::string& path);
 
   /// Writes a packet. Returns an empty text if it was taken, else why it was not. In a stream only

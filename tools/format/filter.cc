@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "codec/text/text.h"
+
 namespace rubric::format {
 namespace {
 
@@ -98,7 +100,7 @@ std::string FilterError::explain(std::string_view expression) const {
   for (char& c : shown) {
     if (c < ' ' || c > '~') c = '?';
   }
-  return fmt::format("{}\n  {}\n  {:>{}}", what(), shown, '^', position_ + 1);
+  return fmt::format("{}\n  {}\n  {:>{}}", text::harmless(what()), shown, '^', position_ + 1);
 }
 
 bool Filter::holds(std::size_t index, const Record& record) const {

@@ -267,6 +267,13 @@ class CheckLive(CheckTest):
         code, report, err = running.report()
         self.assertEqual((code, report["files"], err), (1, ["stdin"], ""))
 
+    def test_a_pipe_that_ends(self):
+        for words in (("check", "--format", "json"), ("decode",), ("stats",)):
+            code, out, err = rubric(words[0], "-", "--follow", *words[1:], stdin=data(STRAY_REPLY),
+                                    timeout=PATIENCE_S)
+            self.assertEqual(code, words[0] == "check", err)
+            self.assertIn("50421" if words[0] == "decode" else "frames", out)
+
     def test_a_named_pipe(self):
         path = self.folder / "sniffed"
         os.mkfifo(path)

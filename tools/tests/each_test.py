@@ -3,6 +3,7 @@
 
 Usage: each_test.py RUBRIC
 """
+import ctypes
 import gzip
 import json
 import os
@@ -27,6 +28,17 @@ def run(*words, **how):
 
 def lines(text):
     return [json.loads(line) for line in text.splitlines()]
+
+
+def as_others():
+    """Takes the right to read everything from root, where that is possible."""
+    for right in (1, 2):  # CAP_DAC_OVERRIDE, CAP_DAC_READ_SEARCH
+        ctypes.CDLL(None).prctl(24, right, 0, 0, 0)  # PR_CAPBSET_DROP
+
+
+def may_look(folder):
+    return subprocess.run(["ls", folder], preexec_fn=as_others, check=False,
+                          capture_output=True).returncode == 0
 
 
 class Each(testing.Folder):
@@ -71,6 +83,42 @@ class Each(testing.Folder):
             self.assertEqual(found[name]["exit_code"], UNREADABLE)
             self.assertIn(name, found[name]["error"])
         self.assertEqual(len(found), len(CAPTURES) + 2)
+
+    def test_what_cannot_be_looked_at_is_a_run_too(self):
+        (self.runs / "loop.pcapng").symlink_to("loop.pcapng")
+        (self.runs / "nowhere.pcapng").symlink_to("nothing")
+        (self.runs / "up").symlink_to("..")
+        closed = self.runs / "closed"
+        closed.mkdir(0)
+        self.addCleanup(closed.chmod, 0o700)
+        for words in (("check",), ("decode", "--jobs", "2")):
+            done = run(words[0], "--each", self.runs, *words[1:], preexec_fn=as_others)
+            self.assertEqual(done.returncode, UNREADABLE, done.stderr)
+            found = {pathlib.Path(line["file"]).name: line for line in lines(done.stdout)}
+            self.assertEqual(set(found) - {"closed"},
+                             {capture.name for capture in CAPTURES} |
+                             {"loop.pcapng", "nowhere.pcapng"})
+            for name in set(found) - {capture.name for capture in CAPTURES}:
+                self.assertEqual(found[name]["exit_code"], UNREADABLE)
+                self.assertIn(name, found[name]["error"])
+            if not may_look(closed):
+                self.assertIn("closed", found)
+        done = run("check", "--each", self.runs / "*.pcapng")
+        self.assertEqual(done.returncode, UNREADABLE, done.stderr)
+
+    def test_names_that_mean_something_elsewhere(self):
+        odd = self.folder / "odd"
+        odd.mkdir()
+        names = ["a\nb.pcapng", "-x.pcapng", "--out=z.pcapng", "*.pcapng", "[a].pcapng", " .pcapng",
+                 'q"\\{}.pcapng', 'exit_code":7.pcapng']
+        for name in names:
+            shutil.copy(CAPTURES[0], odd / name)
+        done = run("check", "--each", odd, "--resume", self.folder / "state")
+        self.assertEqual([line["file"] for line in lines(done.stdout)],
+                         sorted(str(odd / name) for name in names))
+        again = run("check", "--each", odd, "--resume", self.folder / "state")
+        self.assertEqual(again.stdout, done.stdout)
+        self.assertIn(f"({len(names)} known", again.stderr)
 
     def test_patterns(self):
         done = run("check", "--each", self.runs / "*_join*.pcapng", self.runs / "deep")
@@ -140,6 +188,16 @@ class Each(testing.Folder):
         for says, known in ((text, False), (text, True), (text + "# other\n", False)):
             spec.write_text(says, encoding="utf-8")
             self.assertEqual("(1 known" in run(*how).stderr, known)
+        # A line of another version counts for nothing, and a device is no state.
+        other = kept.splitlines()[0].replace(b"rubric.each/1", b"rubric.each/0")
+        state.write_bytes(kept.splitlines()[-1] + b"\n" + other + b"\n")
+        again = run("check", "--each", self.runs, "--resume", state)
+        self.assertEqual(again.stdout, first.stdout)
+        self.assertNotIn(f"({len(CAPTURES)} known", again.stderr)
+        for path, code in (("/dev/full", USAGE), (self.folder, OUTPUT),
+                           (self.folder / "no" / "state", OUTPUT)):
+            done = run("check", "--each", self.runs, "--resume", path)
+            self.assertEqual((done.returncode, done.stdout), (code, ""), done.stderr)
         state.write_bytes(b"something of mine\n")
         self.assertEqual(run("check", "--each", self.runs, "--resume", state).returncode, USAGE)
         self.assertEqual(state.read_bytes(), b"something of mine\n")

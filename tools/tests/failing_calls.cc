@@ -111,9 +111,18 @@ ssize_t write(int fd, const void* bytes, std::size_t size) {
 int rename(const char* from, const char* to) noexcept {
   return fails("rename") ? -1 : static_cast<int>(::syscall(SYS_rename, from, to));
 }
+int renameat2(int from_folder, const char* from, int to_folder, const char* to,
+              unsigned flags) noexcept {
+  return fails("rename")
+             ? -1
+             : static_cast<int>(::syscall(SYS_renameat2, from_folder, from, to_folder, to, flags));
+}
 int fsync(int fd) { return fails("fsync") ? -1 : static_cast<int>(::syscall(SYS_fsync, fd)); }
 int fdatasync(int fd) {
   return fails("fsync") ? -1 : static_cast<int>(::syscall(SYS_fdatasync, fd));
+}
+int syncfs(int fd) noexcept {
+  return fails("fsync") ? -1 : static_cast<int>(::syscall(SYS_syncfs, fd));
 }
 int connect(int fd, const sockaddr* to, socklen_t size) {
   return fails("connect") ? -1 : next<decltype(connect)>("connect")(fd, to, size);

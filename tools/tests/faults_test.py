@@ -148,6 +148,28 @@ class Faults(testing.Folder):
         for call in FAILURES:
             self.assertGreater(tried[call], 5, call)
 
+    def test_reports_are_old_or_new(self):
+        report = self.folder / "report"
+
+        def tree():
+            return {path.relative_to(report): path.read_bytes() for path in report.rglob("*")
+                    if path.is_file()}
+
+        words = ("check", CAPTURE, "--report", report)
+        testing.run(*words)
+        new = tree()
+        for call in ("open", "write", "rename", "fsync"):
+            numbers, good, _ = self.places(words, call)
+            for number in numbers:
+                shutil.rmtree(report)
+                testing.run("check", FIRMWARE / "b_reliable.pcapng", "--report", report)
+                old = tree()
+                done = self.run_with(words, call, number, FAILURES[call])
+                self.assertIn(tree(), (old, new), (call, number, done.stderr))
+                if tree() == old:
+                    self.assertNotEqual(done.returncode, good.returncode, (call, number))
+        self.assertNotEqual(old, new)
+
     def test_what_a_line_sends(self):
         words = ("decode", Forwarder(self, True).name, "--format", "jsonl", "--time", "none",
                  "--count", len(Forwarder.PACKETS), "--write", self.folder / "kept", "--force")

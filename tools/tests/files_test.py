@@ -28,11 +28,15 @@ WRITERS = (
     ("decode", CAPTURE, "--write", "@"),
     ("check", CAPTURE, "--out", "@"),
     ("check", CAPTURE, "--format", "jsonl", "--out", "@"),
+    ("check", "--each", CAPTURE, "--out", "@"),
     ("generate", "--count", "40", "-o", "@"),
     ("generate", "--count", "40", "--format", "hex", "-o", os.devnull, "--expect", "@"),
     ("simulate", "--seconds", "1", "--out-rtr", "@"),
     ("simulate", "--seconds", "1", "--out-pcapng", "@"),
     ("chart", "j4.accept", "--out", "@"),
+    ("shrink", ROOT / "conformance/cases/j2.rtr", "--target", "machine:answers_members", "--out",
+     "@"),
+    ("repro", "machine", SERIAL, "--out", "@"),
     ("explore", "--motes", "1", "--calls", "1", "--loss", "--flaw", "no_fail", "--out", "@"),
     ("test", "--target", "machine", "--cases", "j2.listed", "--out", "@"),
     ("test", "--target", "machine", "--cases", "j2.listed", "--format", "json", "--out", "@"),
@@ -115,6 +119,32 @@ class Files(Folder):
             self.assertIn(b"No such file or directory", process.stderr.read())
             self.assertEqual(process.wait(PATIENCE_S), OUTPUT)
         self.assert_untouched("convert")
+
+    def test_a_growing_file_that_is_deleted(self):
+        kept = self.folder / "kept.pcapng"
+        with self.feeding("decode", "--format", "jsonl", "--write", kept) as process:
+            process.stdin.write(SERIAL.read_bytes()[:2000])
+            process.stdin.flush()
+            process.stdout.readline()
+            kept.unlink()
+            process.stdin.close()
+            process.stdout.read()
+            self.assertIn(b"No such file or directory", process.stderr.read())
+            self.assertEqual(process.wait(PATIENCE_S), OUTPUT)
+
+    def test_findings_that_find_no_folder(self):
+        done = run("check", "-", "--follow", "--format", "jsonl", "--out", self.folder / "no" / "x",
+                   input=SERIAL.read_bytes(), timeout=PATIENCE_S)
+        self.assertEqual(done.returncode, OUTPUT, done.stderr)
+        self.assertIn(b"cannot write", done.stderr)
+
+    def test_folders_of_new_files_are_whole_or_empty(self):
+        for words in (("new-adapter", "python", "--out"), ("new-protocol", "probes", "--out")):
+            folder = self.folder / words[0]
+            done = run(*words, folder, preexec_fn=full_disk(2000))
+            self.assertEqual(done.returncode, OUTPUT, done.stderr)
+            self.assertEqual([path for path in folder.rglob("*") if path.is_file()], [])
+            self.assertEqual(run(*words, folder).returncode, 0)
 
     def test_each_command_killed_at_any_point(self):
         """Of each command: the old file stays, or the new one is whole."""

@@ -78,6 +78,25 @@ class Harmless(testing.Folder):
                       ("encode", gone), ("check", "--each", gone, there)):
             self.assert_harmless(*words)
 
+    def test_line_ends_in_names(self):
+        """A name begins no line of its own."""
+        name = b"a\nrubric: b"
+        there = self.write(name + b".pcapng", CAPTURE.read_bytes())
+        wrong = self.write(name + b".rtr", b"%rtr 1\nx\ny\n")
+        gone = self.write(b"gone", b"") + name
+        spec = self.write(name + b".ksy", b"meta:\n  id: a\nseq:\n  - id: a\n    type: nothing\n")
+        for words in (("check", gone), ("decode", gone), ("check", wrong), ("chart", wrong),
+                      ("test", "--target", "machine", wrong), ("encode", there), ("stats", there),
+                      ("check", CAPTURE, "--out", gone + b"/x"), ("check", "--expect", gone, there),
+                      ("convert", there, "-o", gone + b"/x", "--format", "pcapng"),
+                      ("decode", "--spec", spec, there), ("decode", "--spec", there, CAPTURE),
+                      ("check", "--" + name.decode()), ("forward", there), ("run", there),
+                      ("coverage", "--cases", gone), ("new-adapter", "python", "--out", there),
+                      ("check", "--each", CAPTURE, "--resume", there)):
+            shown = self.shown(*words)
+            self.assertIn(b"rubric: b", shown, words)
+            self.assertNotIn(b"\nrubric: b", shown, words)
+
     def test_words_of_the_command_line(self):
         for words in ((EVIL,), ("check", b"--" + EVIL), ("check", CAPTURE, "--format", EVIL),
                       ("decode", CAPTURE, "--filter", EVIL + b"=="),

@@ -374,6 +374,12 @@ islands:
                          "rubric: cannot write /none/x: No such file or directory", 74)
         self.refused((*node, "--force"), "--force requires --write or --log")
 
+    def test_a_log_that_breaks_says_so_at_once(self):
+        mote = self.started("mote", "--id", "5", "--radio", "zep:0", "--log", "/dev/full")
+        mote.waits_for(rb"(cannot write /dev/full)")
+        self.assertIsNone(mote.process.poll())
+        self.assertEqual(mote.end()[0], 74)
+
     def test_a_closed_stdout_is_no_file(self):
         kept = self.folder / "run.pcapng"
         command = 'exec "$0" run mote --id 5 --radio zep:0 --app - --write "$1" >&-'

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include "codec/reflect/requirements.h"
@@ -49,19 +51,46 @@ std::string place_of(const Story& story, const Finding& finding) {
   return fmt::format("frame {} of {}", finding.place.frame, story.run.files[finding.place.file]);
 }
 
-std::string finding_html(const Story& story, std::size_t index, const TextOptions& options) {
+// `text` is empty for a finding that gets no more than a line.
+std::string finding_html(const Story& story, std::size_t index, std::string_view text) {
   const Finding& finding = story.report.findings[index];
   const bool known = story.outcome.expected_by[index] != kUnexpected;
   const bool open = finding.severity == check::Severity::kFail && !known;
   const std::string_view severity = severity_name(finding.severity);
   const std::string_view rule = reflect::requirement(finding.requirement).id;
-  return fmt::format(
-      "<details{}><summary><b class=\"{}\">{}</b>{} <code>{}</code> {} <span class=\"soft\">{}"
-      "</span><br>{}</summary>\n<pre tabindex=\"0\">{}</pre></details>\n",
-      open ? " open" : "", severity, severity, known ? " (known)" : "",
-      rule.empty() ? "no rule" : text::xml_text(rule), text::xml_text(finding.node),
-      text::xml_text(place_of(story, finding)), text::xml_text(finding.text),
-      text::xml_text(text_finding(story, index, options)));
+  const std::string line = fmt::format(
+      "<b class=\"{}\">{}</b>{} <code>{}</code> {} <span class=\"soft\">{}</span><br>{}", severity,
+      severity, known ? " (known)" : "", rule.empty() ? "no rule" : text::xml_text(rule),
+      text::xml_text(finding.node), text::xml_text(place_of(story, finding)),
+      text::xml_text(finding.text));
+  if (text.empty()) return fmt::format("<p>{}</p>\n", line);
+  return fmt::format("<details{}><summary>{}</summary>\n<pre tabindex=\"0\">{}</pre></details>\n",
+                     open ? " open" : "", line, text::xml_text(text));
+}
+
+std::string findings_html(const Story& story, const TextOptions& options) {
+  const std::vector<std::size_t> all = in_order(story);
+  std::map<std::pair<std::size_t, check::Severity>, std::size_t> in_full_of;
+  std::vector<std::size_t> in_full;
+  for (const std::size_t i : all) {
+    const Finding& finding = story.report.findings[i];
+    const std::size_t rule = reflect::requirement_index(finding.requirement);
+    if (in_full_of[{rule, finding.severity}]++ < options.findings_max) in_full.push_back(i);
+  }
+  const std::vector<std::string> texts = text_findings(story, in_full, options);
+  std::string out;
+  std::size_t next = 0;
+  for (const std::size_t i : all) {
+    const bool full = next < in_full.size() && in_full[next] == i;
+    out += finding_html(story, i, full ? std::string_view(texts[next++]) : std::string_view());
+  }
+  if (all.empty()) out += "<p>None.</p>\n";
+  if (in_full.size() < all.size()) {
+    out +=
+        fmt::format("<p>The first {} of a rule are shown in full; --max-findings N shows N.</p>\n",
+                    options.findings_max);
+  }
+  return out;
 }
 
 }  // namespace
@@ -83,8 +112,7 @@ std::string html_report(const Story& story, const TextOptions& options, std::str
   for (const std::string& fact : found.facts)
     out += fmt::format("<p>{}</p>\n", text::xml_text(fact));
   out += "<h2>Findings</h2>\n";
-  if (found.findings.empty()) out += "<p>None.</p>\n";
-  for (const std::size_t i : in_order(story)) out += finding_html(story, i, options);
+  out += findings_html(story, options);
   out += "<h2>Rules that were kept</h2>\n<p>";
   for (const auto& [id, count] : found.exercised) {
     out += fmt::format("<code>{}</code> {}\n", text::xml_text(reflect::requirement(id).id),

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "conformance/check/report/chart.h"
+#include "conformance/check/report/html.h"
 #include "conformance/check/report/json.h"
 #include "conformance/check/report/junit.h"
 #include "conformance/check/report/text.h"
@@ -307,6 +308,26 @@ TEST(Text, FirstFailureOfARuleInFullOthersInALine) {
   const std::string all = text_report(told.story(), verbose);
   EXPECT_THAT(all, HasSubstr("It said 6"));
   EXPECT_THAT(all, HasSubstr("\033[1;31mFAIL\033[0m J4-SEQ"));
+}
+
+TEST(Html, ShowsSoManyOfARuleInFull) {
+  std::vector<Finding> findings;
+  for (std::uint64_t i = 1; i <= 3; ++i) {
+    findings.push_back(finding("J4-SEQ"_rule, Severity::kFail, i, "It said " + std::to_string(i)));
+  }
+  const Told told(findings);
+  TextOptions options;
+  options.verbose = true;
+  options.findings_max = 2;
+  const std::string page = html_report(told.story(), options, "");
+  const std::size_t line = page.find("<br>It said 3</p>");
+  EXPECT_NE(line, page.npos);
+  EXPECT_LT(page.rfind("<br>It said 2</summary>"), line);
+  EXPECT_EQ(page.find("<pre", line), page.npos);
+  EXPECT_THAT(page,
+              HasSubstr("The first 2 of a rule are shown in full; --max-findings N shows N."));
+  options.findings_max = 3;
+  EXPECT_THAT(html_report(told.story(), options, ""), Not(HasSubstr("--max-findings")));
 }
 
 TEST(Text, KnownStaleAndChangedFailures) {

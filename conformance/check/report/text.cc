@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include "codec/reflect/fault_text.h"
 #include "conformance/check/report/chart.h"
@@ -54,7 +55,7 @@ class TextReport {
 
   std::string one(std::size_t i) {
     options_.verbose ? in_full(i) : in_line(i);
-    return std::move(out_);
+    return std::exchange(out_, {});
   }
 
  private:
@@ -353,6 +354,14 @@ std::string text_verdict(const Story& story) {
 
 std::string text_finding(const Story& story, std::size_t index, const TextOptions& options) {
   return TextReport(story, options).one(index);
+}
+
+std::vector<std::string> text_findings(const Story& story, const std::vector<std::size_t>& indices,
+                                       const TextOptions& options) {
+  TextReport report(story, options);
+  std::vector<std::string> out;
+  for (const std::size_t i : indices) out.push_back(report.one(i));
+  return out;
 }
 
 }  // namespace rubric::report

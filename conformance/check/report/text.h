@@ -41,5 +41,8 @@ std::string text_verdict(const Story& story);
 
 /// Returns one finding of a story: a line, wrapped to the width; in full with `verbose`.
 std::string text_finding(const Story& story, std::size_t index, const TextOptions& options);
+/// Returns the same of several, looking through the run once.
+std::vector<std::string> text_findings(const Story& story, const std::vector<std::size_t>& indices,
+                                       const TextOptions& options);
 
 }  // namespace rubric::report

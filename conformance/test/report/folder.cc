@@ -1,10 +1,13 @@
 #include "conformance/test/report/folder.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstdint>
+#include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
@@ -22,6 +25,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kAccount = "report.files";
 constexpr const char* kTitle = "rubric.files/1";
+constexpr const char* kPage = "index.html";
 
 // FNV-1a with 64 bits: it detects that a file was changed and resists no attacker.
 std::string sum_of(std::string_view text) {
@@ -53,6 +57,10 @@ void make_folder(const fs::path& path) {
   std::error_code error;
   fs::create_directories(path, error);
   if (error) cannot_write(path, error.value());
+}
+
+bool swap_files(const fs::path& one, const fs::path& other) {
+  return ::renameat2(AT_FDCWD, one.c_str(), AT_FDCWD, other.c_str(), RENAME_EXCHANGE) == 0;
 }
 
 }  // namespace
@@ -92,12 +100,30 @@ void ReportFolder::write(const std::string& path, std::string_view text) {
   written_[path] = sum_of(text);
 }
 
-void ReportFolder::place(const std::string& path) const {
+// Old files go where the new ones were staged, so that undo() can put them back.
+void ReportFolder::place(const std::string& path) {
+  const fs::path from = staged_ / path;
   const fs::path to = folder_ / path;
-  make_folder(to.parent_path());
   std::error_code error;
-  fs::rename(staged_ / path, to, error);
-  if (error) cannot_write(to, error.value());
+  const bool swapped = swap_files(from, to);
+  if (swapped && fs::is_directory(fs::symlink_status(from, error))) {  // It came meanwhile.
+    swap_files(from, to);
+    cannot_write(to, EISDIR);
+  }
+  const bool is_new = !fs::exists(fs::symlink_status(to, error));
+  if (!swapped) fs::rename(from, to, error);
+  if (!swapped && error) cannot_write(to, error.value());
+  // Where a file system cannot swap, an old file is gone.
+  if (swapped || is_new) placed_.push_back(path);
+}
+
+void ReportFolder::undo() {
+  std::error_code ignored;
+  for (; !placed_.empty(); placed_.pop_back()) {
+    const fs::path from = staged_ / placed_.back();
+    const fs::path to = folder_ / placed_.back();
+    if (!swap_files(from, to) && errno == ENOENT) fs::remove(to, ignored);  // There was none.
+  }
 }
 
 ReportFolder::Account ReportFolder::read_account() const {
@@ -132,15 +158,43 @@ void ReportFolder::remove(const std::string& path, const std::string& sum) const
   }
 }
 
+void ReportFolder::stage_account(const Account& files) const {
+  std::string text = std::string(kTitle) + '\n';
+  for (const auto& [path, sum] : files) text += sum + ' ' + path + '\n';
+  stage(kAccount, text);
+}
+
+void ReportFolder::flush() const {
+  const int fd = ::open(staged_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  const int error = fd < 0 || ::syncfs(fd) != 0 ? errno : 0;
+  if (fd >= 0) ::close(fd);
+  if (error != 0) cannot_write(folder_, error);
+}
+
 void ReportFolder::finish() {
-  std::string account = std::string(kTitle) + '\n';
-  for (const auto& [path, sum] : written_) account += sum + ' ' + path + '\n';
-  stage(kAccount, account);
   const Account old = read_account();
-  for (const auto& [path, sum] : written_) place(path);
+  Account all = written_;
+  all.insert(old.begin(), old.end());  // Until they are removed.
+  stage_account(all);
+  flush();
+  try {
+    for (const auto& [path, sum] : written_) make_folder((folder_ / path).parent_path());
+    for (const auto& [path, sum] : written_) {
+      if (path != kPage) place(path);
+    }
+    place(kAccount);
+    if (written_.contains(kPage)) place(kPage);
+  } catch (const std::system_error&) {
+    undo();
+    throw;
+  }
+  placed_.clear();
   for (const auto& [path, sum] : old) {
     if (!written_.contains(path)) remove(path, sum);
   }
+  if (all.size() == written_.size()) return;
+  fs::remove(staged_ / kAccount);  // The one before.
+  stage_account(written_);
   place(kAccount);
 }
 

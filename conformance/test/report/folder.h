@@ -5,14 +5,15 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace rubric::suite {
 
 /// Writes files into a folder and lists them in its file `report.files`, so that the next report
-/// can remove those that it no longer has. All files are written beside the old ones before the
-/// first of them is replaced, so that a full disk costs none. Writes through no link. Removes
-/// nothing else: no file that the list does not have, that somebody has changed since, or that a
-/// link leads to.
+/// can remove those that it no longer has. All files are on the disk, beside the old ones, before
+/// the first of them is replaced; index.html, which leads to the others, is the last, and all are
+/// put back if one cannot be replaced. Writes through no link. Removes nothing else: no file that
+/// the list does not have, that somebody has changed since, or that a link leads to.
 class ReportFolder {
  public:
   /// Makes the folder. Throws std::system_error with the path, as write() and finish() do.
@@ -36,11 +37,15 @@ class ReportFolder {
   void remove(const std::string& path, const std::string& sum) const;
 
   void stage(const std::string& path, std::string_view text) const;
-  void place(const std::string& path) const;
+  void stage_account(const Account& files) const;
+  void flush() const;
+  void place(const std::string& path);
+  void undo();
 
   std::filesystem::path folder_;
   std::filesystem::path staged_;  // A folder in it.
   Account written_;
+  std::vector<std::string> placed_;  // By finish().
 };
 
 }  // namespace rubric::suite

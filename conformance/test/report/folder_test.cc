@@ -128,6 +128,33 @@ TEST(ReportFolder, KeepsTheOldReportUntilTheNewOneIsWhole) {
   EXPECT_GT(fs::file_size(path / "index.html"), 3U);
 }
 
+TEST(ReportFolder, PutsOldFilesBackIfOneCannotBeReplaced) {
+  Folder folder;
+  const fs::path path = folder.path() / "report";
+  const auto fill = [](ReportFolder& report, const std::string& text) {
+    for (const char* name : {"a.txt", "index.html"}) report.write(name, text);
+  };
+  {
+    ReportFolder report(path);
+    fill(report, "old");
+    report.finish();
+  }
+  {
+    ReportFolder report(path);
+    fill(report, "new");
+    for (const char* name : {"b.txt", "c.txt"}) report.write(name, "new");
+    put(path / "c.txt" / "mine.txt", "mine");
+    EXPECT_THROW(report.finish(), std::system_error);
+  }
+  EXPECT_EQ(files_in(path),
+            (std::set<std::string>{"a.txt", "c.txt/mine.txt", "index.html", "report.files"}));
+  for (const char* name : {"a.txt", "index.html"}) {
+    std::string text;
+    EXPECT_EQ(text::read_file((path / name).string(), text), 0);
+    EXPECT_EQ(text, "old") << name;
+  }
+}
+
 TEST(ReportFolder, SaysWhyAFileCannotBeWritten) {
   EXPECT_EQ(text::write_file("/dev/full", "x"), ENOSPC);
   EXPECT_EQ(text::write_file("/dev/null/x", "x"), ENOTDIR);

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "codec/text/files.h"
+#include "codec/text/text.h"
 
 namespace rubric::runner {
 
@@ -26,7 +27,7 @@ std::vector<trace::Parsed> load_cases(const std::filesystem::path& folder) {
   for (const auto& path : paths) {
     std::string text;
     if (const int code = text::read_file(path, text)) {
-      errors += fmt::format("{}: {}\n", path.generic_string(), std::strerror(code));
+      errors += fmt::format("{}: {}\n", text::harmless(path.generic_string()), std::strerror(code));
       continue;
     }
     files.push_back(trace::parse(text, path.generic_string()));

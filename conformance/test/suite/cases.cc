@@ -102,9 +102,8 @@ Cases Cases::of_text(std::string_view text, const std::string& file_name) {
 }
 
 const SuiteCase* Cases::find(std::string_view name) const {
-  const auto found = std::find_if(cases_.begin(), cases_.end(),
-                                  [&](const SuiteCase& one) { return one.blank.name == name; });
-  return found == cases_.end() ? nullptr : &*found;
+  const auto found = places_.find(name);
+  return found == places_.end() ? nullptr : &cases_[found->second];
 }
 
 void Cases::add(trace::Parsed file) {
@@ -120,6 +119,7 @@ void Cases::add(trace::Parsed file) {
     if (added.blank.roles.empty()) {
       throw std::runtime_error(place + " has no node under test (iut)");
     }
+    places_[one.name] = cases_.size();
     cases_.push_back(std::move(added));
   }
 }

@@ -1,7 +1,10 @@
 // The golden traces of a suite: the kit's own, which the program contains, or the user's files.
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <list>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -43,6 +46,7 @@ class Cases {
 
   std::list<trace::Parsed> files_;  // Cases point into them.
   std::vector<SuiteCase> cases_;
+  std::map<std::string, std::size_t, std::less<>> places_;  // By name.
 };
 
 /// A golden trace as text, under its path in the project. Generated when the program is built.

@@ -15,7 +15,7 @@ namespace rubric::tools {
 const std::map<std::string, std::string_view>& skeleton_files();
 
 /// Writes files, by their names in a folder, and prints these. Ends the subcommand with 74 if one
-/// of them exists or cannot be written.
+/// of them exists or cannot be written; then none is there.
 void write_new_files(const std::string& command, const std::filesystem::path& folder,
                      const std::vector<std::pair<std::filesystem::path, std::string>>& files);
 

@@ -32,7 +32,7 @@ void Keeper::open_log(const std::string& path, Mode mode,
   file.cases.emplace_back("run");
   log_ = std::make_unique<text::OutFile>(path, mode);
   log_path_ = path;
-  log_error_ = text::write_all(log_->fd(), trace::print(file));
+  check_log(text::write_all(log_->fd(), trace::print(file)));
 }
 
 void Keeper::frame(const Packet& packet, std::string_view interface_name) {
@@ -87,7 +87,13 @@ void Keeper::put(const trace::Line& line) {
   std::string text;
   trace::put_line(line, text);
   text += '\n';
-  if (log_error_ == 0) log_error_ = text::write_all(log_->fd(), text);
+  if (log_error_ == 0) check_log(text::write_all(log_->fd(), text));
+}
+
+void Keeper::check_log(int error) {
+  log_error_ = error;
+  if (error == 0) return;
+  text::print(stderr, "rubric: cannot write {}: {}\n", log_path_, std::strerror(error));
 }
 
 bool Keeper::finish() {
@@ -99,10 +105,7 @@ bool Keeper::finish() {
   }
   if (log_) {
     const int error = log_->finish();
-    if (log_error_ == 0) log_error_ = error;
-    if (log_error_ != 0) {
-      text::print(stderr, "rubric: cannot write {}: {}\n", log_path_, std::strerror(log_error_));
-    }
+    if (log_error_ == 0) check_log(error);
   }
   return good && log_error_ == 0;
 }

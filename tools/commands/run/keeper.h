@@ -46,6 +46,7 @@ class Keeper {
   };
   void write_until(std::int64_t time_ns);
   void put(const trace::Line& line);
+  void check_log(int error);
   std::int64_t now_us() const;
 
   std::mutex mutex_;

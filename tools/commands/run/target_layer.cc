@@ -43,7 +43,7 @@ void TargetLayer::guarded(Action action) {
     action();
   } catch (const lines::Broken& broken) {
     target_.reset();  // Gives its process back, with its last words.
-    text::print(stderr, "{}", attachment_->take_stderr());
+    text::print_harmless(stderr, attachment_->take_stderr());
     throw lines::Broken(fmt::format("{}: {}", name_, broken.what()));
   } catch (const runner::Unsupported& refusal) {
     throw std::invalid_argument(fmt::format("{}: unsupported: {}", name_, refusal.what()));

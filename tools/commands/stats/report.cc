@@ -7,6 +7,7 @@
 
 #include "codec/reflect/fault_text.h"
 #include "codec/text/json.h"
+#include "codec/text/text.h"
 #include "tools/commands/explain/table.h"
 #include "tools/format/put.h"
 
@@ -44,7 +45,7 @@ std::string short_gap(std::int64_t ns) {
 
 std::string place_text(const Place& place) {
   return fmt::format("frame {} at {} s, byte {} of {}", place.number, seconds(place.time_ns),
-                     place.offset, place.file);
+                     place.offset, text::harmless(place.file));
 }
 
 std::string or_empty(std::uint64_t number) { return number ? std::to_string(number) : ""; }
@@ -73,7 +74,7 @@ std::string faults_text(const Counters& counters) {
   for (const auto& [key, count] : faults) {
     const reflect::Requirement& rule = reflect::requirement(key.second);
     table.add({std::string(reflect::fault_name(key.first)), rule.id, std::to_string(count.frames),
-               std::to_string(count.first.number), one_file ? "" : count.first.file,
+               std::to_string(count.first.number), one_file ? "" : text::harmless(count.first.file),
                rule.sentence});
   }
   return table.empty() ? std::string{} : '\n' + table.text_within(explain::kColumns);
@@ -245,7 +246,7 @@ std::string text_report(const Counters& counters) {
     explain::Table table({"interface", "frames"});
     table.align_right(1);
     for (const auto& [name, frames] : counters.interfaces()) {
-      table.add({name.empty() ? "(unnamed)" : name, std::to_string(frames)});
+      table.add({name.empty() ? "(unnamed)" : text::harmless(name), std::to_string(frames)});
     }
     out += '\n' + table.text();
   }

@@ -273,7 +273,7 @@ cli::InputOptions input_of(const CaptureOptions& options) {
 }
 
 int usage(const std::string& what) {
-  text::print(stderr, "rubric-extcap: {}\n", what);
+  text::print_harmless(stderr, "rubric-extcap: " + what + '\n');
   return cli::kExitUsage;
 }
 
