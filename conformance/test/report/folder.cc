@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kAccount = "report.files";
 constexpr const char* kTitle = "rubric.files/1";
-constexpr const char* kPage = "index.html";
+constexpr const char* kStartPage = "index.html";
 
 // FNV-1a with 64 bits: it detects that a file was changed and resists no attacker.
 std::string sum_of(std::string_view text) {
@@ -180,10 +180,10 @@ void ReportFolder::finish() {
   try {
     for (const auto& [path, sum] : written_) make_folder((folder_ / path).parent_path());
     for (const auto& [path, sum] : written_) {
-      if (path != kPage) place(path);
+      if (path != kStartPage) place(path);
     }
     place(kAccount);
-    if (written_.contains(kPage)) place(kPage);
+    if (written_.contains(kStartPage)) place(kStartPage);
   } catch (const std::system_error&) {
     undo();
     throw;
