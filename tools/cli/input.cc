@@ -464,11 +464,11 @@ void add_input_options(Command& app, InputOptions& options) {
       .check(given);
 }
 
-void add_spec_option(Command& app, InputOptions& options, const std::string& names) {
+void add_spec_option(Command& app, InputOptions& options) {
   const std::string by_content =
       options.spec == kAutoSpec ? "; auto is rubicon, unless another decodes more of what is read"
                                 : "";
-  app.add_option(names, options.spec,
+  app.add_option("--spec", options.spec,
                  "Use this protocol above the AM layer: a name (list prints them; none shows bare "
                  "messages), a .ksy file, or several, as a,b: where two have an AM type, the "
                  "first of them has it" +
