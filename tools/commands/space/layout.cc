@@ -20,7 +20,6 @@
 #include "codec/reflect/encode.h"
 #include "conformance/machine/messages.h"
 #include "tools/commands/run/names.h"
-#include "tools/format/put.h"
 
 namespace rubric::space {
 namespace {
@@ -104,11 +103,7 @@ std::vector<std::uint8_t> bytes_at(const Json& json, const char* name, std::size
   return out;
 }
 
-string hex_of(Bytes bytes) {
-  string hex(2 * bytes.size(), '0');
-  format::put_hex(hex.data(), bytes);
-  return hex;
-}
+string hex_of(Bytes bytes) { return fmt::format("{:02x}", fmt::join(bytes, "")); }
 
 std::int64_t time_of(const string& text) {
   const std::string_view form = "0000-00-00T00:00:00.000Z";
@@ -271,8 +266,7 @@ string parse_net(const Tuple& tuple, std::vector<std::uint8_t>& packet) {
     const Json json = object_of(tuple.data);
     check_keys(json, {"src", "dest", "net_msg"});
     const std::optional<Key> key = parse_key(tuple.key);
-    tinyos::AmHeader header;
-    header.src = number_at<std::uint16_t>(json, "src");
+    tinyos::AmHeader header{.src = number_at<std::uint16_t>(json, "src")};
     const bool all = value_at(json, "dest") == kAll;
     header.dest = all ? machine::kBroadcastPid : number_at<std::uint16_t>(json, "dest");
     if (machine::is_reserved(header.src)) throw Refusal("src: no island has this number");
@@ -356,9 +350,8 @@ string parse_wish(const string& data, Wish& wish) {
       wish.data.assign(text.begin(), text.end());
     } else if (json.contains("sampling_ms")) {
       check_keys(json, {"id", "reliable", "sampling_ms", "transducers"});
-      rubicon::ReadUpdates message;
-      message.type = rubicon::AmType::kReadUpdates;
-      message.sampling_rate = number_at<std::uint16_t>(json, "sampling_ms");
+      rubicon::ReadUpdates message{.type = rubicon::AmType::kReadUpdates,
+                                   .sampling_rate = number_at<std::uint16_t>(json, "sampling_ms")};
       wish.transducers = run::transducers_of(names_at(json, "transducers"));
       message.transducers = rubicon::TransducerMask(wish.transducers);
       wish.data.resize(rubicon::ReadUpdatesView::kMaxSizeBytes);
