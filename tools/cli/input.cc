@@ -136,9 +136,7 @@ class Run {
     lost_ = false;
     lines::Line line(address, options_.listen_only);
     source_.format = format_name(line.format());
-    ReaderOptions reader_options;
-    reader_options.direction = Direction::kOutbound;
-    reader_options.interface_name = address.name;
+    ReaderOptions reader_options{.direction = Direction::kOutbound, .interface_name = address.name};
     while (!lines::stop_requested() && !result_.stopped) {
       const std::unique_ptr<Reader> reader = make_reader(line.format(), reader_options);
       try {

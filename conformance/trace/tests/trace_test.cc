@@ -14,7 +14,6 @@
 #include "conformance/trace/parse.h"
 #include "conformance/trace/print.h"
 #include "conformance/trace/tests/testing.h"
-#include "conformance/trace/value_text.h"
 
 namespace rubric::trace {
 namespace {

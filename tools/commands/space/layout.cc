@@ -266,7 +266,8 @@ string parse_net(const Tuple& tuple, std::vector<std::uint8_t>& packet) {
     const Json json = object_of(tuple.data);
     check_keys(json, {"src", "dest", "net_msg"});
     const std::optional<Key> key = parse_key(tuple.key);
-    tinyos::AmHeader header{.src = number_at<std::uint16_t>(json, "src")};
+    tinyos::AmHeader header;
+    header.src = number_at<std::uint16_t>(json, "src");
     const bool all = value_at(json, "dest") == kAll;
     header.dest = all ? machine::kBroadcastPid : number_at<std::uint16_t>(json, "dest");
     if (machine::is_reserved(header.src)) throw Refusal("src: no island has this number");
@@ -350,8 +351,9 @@ string parse_wish(const string& data, Wish& wish) {
       wish.data.assign(text.begin(), text.end());
     } else if (json.contains("sampling_ms")) {
       check_keys(json, {"id", "reliable", "sampling_ms", "transducers"});
-      rubicon::ReadUpdates message{.type = rubicon::AmType::kReadUpdates,
-                                   .sampling_rate = number_at<std::uint16_t>(json, "sampling_ms")};
+      rubicon::ReadUpdates message;
+      message.type = rubicon::AmType::kReadUpdates;
+      message.sampling_rate = number_at<std::uint16_t>(json, "sampling_ms");
       wish.transducers = run::transducers_of(names_at(json, "transducers"));
       message.transducers = rubicon::TransducerMask(wish.transducers);
       wish.data.resize(rubicon::ReadUpdatesView::kMaxSizeBytes);
