@@ -34,9 +34,7 @@ std::string make_stream(std::size_t size_bytes, Traffic traffic) {
     // A sink's frame has seven bytes that vary freely: sequence number and five readings.
     const std::size_t content_end = traffic == kRandom ? sizeof(packet) : 23;
     for (std::size_t i = 16; i < content_end; ++i) packet[i] = static_cast<std::uint8_t>(random());
-    Packet out_packet;
-    out_packet.framing = Framing::kSf;
-    out_packet.bytes = packet;
+    Packet out_packet{.framing = Framing::kSf, .bytes = packet};
     writer.write(out_packet, out);
   }
   return out;

@@ -76,14 +76,13 @@ Draft FrameGenerator::draft(const reflect::Route& route) {
 
 Generated FrameGenerator::valid(const reflect::Route& route) {
   Draft made = draft(route);
-  Generated out;
-  out.framing = framing_of(route);
-  out.numbers = numbers_of(made, made.bytes, true);
-  out.bytes = std::move(made.bytes);
-  out.path = std::move(made.path);
-  out.route = &route;
-  out.what = "valid";
-  return out;
+  std::vector<NumberAt> numbers = numbers_of(made, made.bytes, true);
+  return {.framing = framing_of(route),
+          .bytes = std::move(made.bytes),
+          .route = &route,
+          .path = std::move(made.path),
+          .numbers = std::move(numbers),
+          .what = "valid"};
 }
 
 Generated FrameGenerator::near_valid(const reflect::Route& route) {
@@ -96,25 +95,22 @@ Generated FrameGenerator::near_valid(const reflect::Route& route) {
     if (made.body.type && random_.chance(kBodyShare)) {
       if (!break_body(made, most_bytes(radio), random_, broken)) continue;
       made.path.pop_back();
-      Generated out;
-      out.framing = framing_of(route);
-      out.numbers = numbers_of(made, broken.bytes, false);
-      out.bytes = std::move(broken.bytes);
-      out.route = &route;
-      out.path = std::move(made.path);
-      out.unfit = broken.error;
-      out.unfit_message = made.body.type;
-      out.what = std::move(broken.what);
-      return out;
+      std::vector<NumberAt> numbers = numbers_of(made, broken.bytes, false);
+      return {.framing = framing_of(route),
+              .bytes = std::move(broken.bytes),
+              .route = &route,
+              .path = std::move(made.path),
+              .numbers = std::move(numbers),
+              .unfit = broken.error,
+              .unfit_message = made.body.type,
+              .what = std::move(broken.what)};
     }
     if (!break_somehow(made, most_bytes(radio), short_radio, random_, broken)) continue;
-    Generated out;
-    out.framing = framing_of(route);
-    out.bytes = std::move(broken.bytes);
-    out.route = &route;
-    out.error = broken.error;
-    out.what = std::move(broken.what);
-    return out;
+    return {.framing = framing_of(route),
+            .bytes = std::move(broken.bytes),
+            .route = &route,
+            .error = broken.error,
+            .what = std::move(broken.what)};
   }
   return valid(route);
 }

@@ -19,10 +19,7 @@ namespace {
 constexpr int kSeeds = 2000;
 
 Packet packet_of(const Generated& made) {
-  Packet packet;
-  packet.framing = made.framing;
-  packet.bytes = Bytes(made.bytes.data(), made.bytes.size());
-  return packet;
+  return {.framing = made.framing, .bytes = Bytes(made.bytes.data(), made.bytes.size())};
 }
 
 /// Expects the bytes that do not fit to stay opaque, and to be refused, as the message that they

@@ -403,9 +403,7 @@ class FrameWriter {
       const reflect::RouteChoice& choice = route_.choices[i];
       if (choice.offset < at) continue;
       draft_.bytes.resize(std::max<std::size_t>(size(), choice.offset + choice.width_bytes));
-      Field raw{};
-      raw.width_bytes = choice.width_bytes;
-      raw.little_endian = choice.little_endian;
+      Field raw{.width_bytes = choice.width_bytes, .little_endian = choice.little_endian};
       reflect::store_number(raw, choice.value, draft_.bytes.data() + choice.offset);
     }
     const Type* wanted = nullptr;

@@ -93,8 +93,7 @@ TEST(HostLink, OneAtATimeInOrder) {
 }
 
 TEST(HostLink, SentAgainUnderTheNextNumberThenGivenUp) {
-  HostLinkOptions options;
-  options.tries = 3;
+  HostLinkOptions options{.tries = 3};
   Host host(options);
   host.link.submit(view(kConfig), at(0));
   EXPECT_EQ(host.wrote(), sent(14, kConfig));
@@ -186,8 +185,7 @@ TEST(HostLink, WhatComesIsAnsweredAndGivenUp) {
 }
 
 TEST(HostLink, ListenOnlyWritesNothing) {
-  HostLinkOptions options;
-  options.listen_only = true;
+  HostLinkOptions options{.listen_only = true};
   Host host(options);
   EXPECT_EQ(host.link.submit(view(kConfig), at(0)), Submitted::kListenOnly);
   host.take(packet_frame(kSerialPacketAck, 0x2a, kConfig), 1);
@@ -197,8 +195,7 @@ TEST(HostLink, ListenOnlyWritesNothing) {
 }
 
 TEST(HostLink, WhatIsRefused) {
-  HostLinkOptions options;
-  options.waiting_max = 2;
+  HostLinkOptions options{.waiting_max = 2};
   Host host(options);
   EXPECT_EQ(host.link.submit({}, at(0)), Submitted::kBadSize);
   EXPECT_EQ(host.link.submit(view(Octets(253, 0)), at(0)), Submitted::kBadSize);
@@ -234,8 +231,7 @@ TEST(HostLink, ALineThatTakesNothing) {
 }
 
 TEST(HostLink, ALineThatTakesNothingIsGivenUpInTime) {
-  HostLinkOptions options;
-  options.tries = 3;
+  HostLinkOptions options{.tries = 3};
   Host host(options);
   host.link.submit(view(kConfig), at(0));
   host.link.submit(view(kOther), at(0));
@@ -295,9 +291,8 @@ TEST(HostLink, TheOutcomeMaySubmit) {
 TEST(HostLink, AnyBytesAnyTimes) {
   std::mt19937 random(11);
   for (int round = 0; round < 300; ++round) {
-    HostLinkOptions options;
-    options.tries = 1 + static_cast<int>(random() % 4);
-    options.waiting_max = random() % 5;
+    HostLinkOptions options{.tries = 1 + static_cast<int>(random() % 4),
+                            .waiting_max = random() % 5};
     Host host(options);
     int time_ms = 0;
     std::uint8_t last = 13;

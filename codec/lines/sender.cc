@@ -35,10 +35,7 @@ constexpr std::size_t kReadBytes = 4096;
 constexpr int kReadsMost = 256;
 
 ReaderOptions reader_options(const std::string& name) {
-  ReaderOptions options;
-  options.direction = Direction::kOutbound;
-  options.interface_name = name;
-  return options;
+  return {.direction = Direction::kOutbound, .interface_name = name};
 }
 
 }  // namespace
@@ -84,12 +81,10 @@ void Sender::greet() {
 }
 
 Sender::Result Sender::result_of(const HostLink::Outcome& outcome) const {
-  Result result;
-  result.done = outcome.confirmed;
-  result.tries = outcome.tries;
-  result.strange_acks = outcome.strange_acks;
-  result.took = std::chrono::duration_cast<Milliseconds>(outcome.ended - outcome.begun);
-  return result;
+  return {.done = outcome.confirmed,
+          .tries = outcome.tries,
+          .strange_acks = outcome.strange_acks,
+          .took = std::chrono::duration_cast<Milliseconds>(outcome.ended - outcome.begun)};
 }
 
 Sender::Result Sender::send(Bytes packet) {

@@ -69,12 +69,7 @@ ByteStream open_serial_device(const std::string& path, std::uint32_t baud) {
   return ByteStream(std::move(device));
 }
 
-HostLinkOptions SerialLine::link_options() {
-  HostLinkOptions options;
-  options.ack_wait = kAckWait;
-  options.tries = kTries;
-  return options;
-}
+HostLinkOptions SerialLine::link_options() { return {.ack_wait = kAckWait, .tries = kTries}; }
 
 void SerialLine::begin(SteadyTime) {
   link_.reset(steady_clock::now());

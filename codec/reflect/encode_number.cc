@@ -29,18 +29,9 @@ Bounds bounds(const Field& f) {
 
 std::string quoted(std::string_view name) { return '"' + std::string(name) + '"'; }
 
-NumberResult problem(std::string text) {
-  NumberResult result;
-  result.problem = std::move(text);
-  return result;
-}
+NumberResult problem(std::string text) { return {.problem = std::move(text)}; }
 
-NumberResult good(std::int64_t value) {
-  NumberResult result;
-  result.present = true;
-  result.value = value;
-  return result;
-}
+NumberResult good(std::int64_t value) { return {.present = true, .value = value}; }
 
 NumberResult float_of(const Value& value) {
   float number = 0;

@@ -15,40 +15,24 @@ struct Value {
   enum class Kind : std::uint8_t { kNull, kBool, kInteger, kReal, kString, kArray, kObject };
 
   Kind kind = Kind::kNull;
-  std::int64_t integer = 0;       ///< kInteger; kBool: 0 or 1.
-  std::string text;               ///< kString; kReal: the number as it was written.
-  std::vector<Value> items;       ///< kArray, kObject.
-  std::vector<std::string> keys;  ///< kObject: keys[i] names items[i].
+  std::int64_t integer = 0;            ///< kInteger; kBool: 0 or 1.
+  std::string text = {};               ///< kString; kReal: the number as it was written.
+  std::vector<Value> items = {};       ///< kArray, kObject.
+  std::vector<std::string> keys = {};  ///< kObject: keys[i] names items[i].
 
   static Value of_integer(std::int64_t number) {
-    Value value;
-    value.kind = Kind::kInteger;
-    value.integer = number;
-    return value;
+    return {.kind = Kind::kInteger, .integer = number};
   }
   static Value of_string(std::string_view string) {
-    Value value;
-    value.kind = Kind::kString;
-    value.text = string;
-    return value;
+    return {.kind = Kind::kString, .text = std::string(string)};
   }
   static Value of_real(std::string_view literal) {
-    Value value;
-    value.kind = Kind::kReal;
-    value.text = literal;
-    return value;
+    return {.kind = Kind::kReal, .text = std::string(literal)};
   }
   static Value of_array(std::vector<Value> elements) {
-    Value value;
-    value.kind = Kind::kArray;
-    value.items = std::move(elements);
-    return value;
+    return {.kind = Kind::kArray, .items = std::move(elements)};
   }
-  static Value of_object() {
-    Value value;
-    value.kind = Kind::kObject;
-    return value;
-  }
+  static Value of_object() { return {.kind = Kind::kObject}; }
 
   bool is(Kind k) const { return kind == k; }
 

@@ -339,8 +339,7 @@ class LoopSearch {
   }
 
   Path path_of(Vertex first, const std::vector<std::pair<Vertex, Inside>>& loop) {
-    Path path;
-    path.violated = states_[first].waits;
+    Path path{.violated = states_[first].waits};
     World world;
     const auto take = [&](Vertex from, std::size_t way) {
       packer_.unpack(states_[from].packed, world);

@@ -81,8 +81,7 @@ Nodes::Nodes(const Options& options) : options_(options) {
 }
 
 machine::Config Nodes::config_of(std::size_t node) const {
-  machine::Config config;
-  config.profile = options_.profile;
+  machine::Config config{.profile = options_.profile};
   if (is_mote(node)) {
     config.id = static_cast<std::uint16_t>(kFirstMoteId + node);
   } else {
@@ -213,8 +212,7 @@ void Nodes::step(NodeState& node, const machine::Event& event, Outcome& outcome)
 
 Outcome Nodes::compute(NodeId id, std::uint32_t what) {
   NodeState node = states_[id].node;
-  Outcome outcome;
-  outcome.of = {id, what, 0};
+  Outcome outcome{.of = {id, what, 0}};
   const machine::Transmit* frame =
       what >= event::kFrame ? &this->frame(static_cast<FrameId>(what - event::kFrame)) : nullptr;
   step(node, event_of(node.state, node.monitor, what, frame), outcome);

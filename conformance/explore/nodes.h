@@ -17,8 +17,7 @@
 
 namespace rubric::explore {
 
-// A list that grows without moving its elements, so that others may read while one appends.
-
+/// A list that grows without moving its elements, so that others may read while one appends.
 /// Appending needs a lock. Reading an element learned of through that lock, or through a barrier
 /// after it, needs none.
 template <typename T, std::size_t kChunk = 1024, std::size_t kChunks = 16384>

@@ -97,9 +97,7 @@ std::optional<Trigger> join_trigger(const State& state, const Given& given) {
 }
 
 std::vector<Options> join_networks(const machine::Profile& profile) {
-  Options options;
-  options.profile = profile;
-  options.sinks = 2;
+  Options options{.profile = profile, .sinks = 2};
   options.loss = options.dup = options.reorder = true;
   options.calls = 2;
   options.reboots = 1;
@@ -190,8 +188,7 @@ std::optional<Trigger> message_trigger(const State& state, const Given& given) {
 }
 
 std::vector<Options> message_networks(const machine::Profile& profile) {
-  Options options;
-  options.profile = profile;
+  Options options{.profile = profile};
   options.profile.join_requests_max = 1;
   options.profile.ack_join_max = 1;
   options.scope = Scope::kFull;
@@ -275,9 +272,7 @@ std::vector<Given> output_alphabet(const machine::Profile&) {
 
 // Returns the data that the other end sends at its tick.
 machine::Transmit data(const machine::Profile& profile) {
-  machine::Config config;
-  config.id = kPeer.devid;
-  config.profile = profile;
+  machine::Config config{.id = kPeer.devid, .profile = profile};
   State peer = machine::start(config);
   peer.join.phase = machine::JoinMote::Phase::kMember;
   peer.join.address = kPeer;

@@ -124,10 +124,7 @@ class Tried {
 template <class Message>
 Transmit frame_of(std::uint8_t type, std::uint16_t src, std::uint16_t dest,
                   const Message& message) {
-  Transmit frame;
-  frame.type = type;
-  frame.src = src;
-  frame.dest = dest;
+  Transmit frame{.type = type, .dest = dest, .src = src};
   const auto bytes =
       rubicon::write(message, MutableBytes(frame.payload.data(), frame.payload.size()));
   frame.size_bytes = static_cast<std::uint8_t>(bytes->size());
@@ -295,9 +292,7 @@ std::uint16_t busy(Tried& node) {
 }
 
 std::vector<Sample> mote_samples(const machine::Profile& profile, StepFunction step) {
-  machine::Config config;
-  config.id = kMote;
-  config.profile = profile;
+  machine::Config config{.id = kMote, .profile = profile};
   const Tried outside(config, step);
   Tried asking = outside;
   asking.call(machine::JoinIsland{{}});
@@ -329,11 +324,8 @@ std::vector<Sample> mote_samples(const machine::Profile& profile, StepFunction s
 }
 
 std::vector<Sample> sink_samples(const machine::Profile& profile, StepFunction step) {
-  machine::Config config;
-  config.role = machine::Role::kSink;
-  config.id = profile.sink_id;
-  config.island = kIsland;
-  config.profile = profile;
+  machine::Config config{
+      .role = machine::Role::kSink, .id = profile.sink_id, .island = kIsland, .profile = profile};
   Tried sink(config, step);
   sink.hear(join_request(kPeer));
   sink.hear(ack_join(kPeer, kIsland, kNumber));
@@ -430,12 +422,11 @@ class Flowchart {
     out_.states.push_back(step.text);
     placed_[id] = state;
     for (const Edge& edge : step.edges) {
-      Transition answer;
-      answer.from = state;
-      answer.trigger = fmt::format("{}", fmt::join(edge.answers, " or "));
-      answer.witness = edge.witness->witness;
-      answer.rules = steps_[edge.to].rules;
-      answer.to = place(edge.to);
+      Transition answer{.from = state,
+                        .to = place(edge.to),
+                        .trigger = fmt::format("{}", fmt::join(edge.answers, " or ")),
+                        .rules = steps_[edge.to].rules,
+                        .witness = edge.witness->witness};
       out_.transitions.push_back(std::move(answer));
     }
     return state;
@@ -456,9 +447,7 @@ Diagram reception_of(std::string_view name, const machine::Profile& profile, Ste
   using namespace reception;
   const PartName& part = *std::find_if(kNames.begin(), kNames.end(),
                                        [&](const PartName& one) { return name == one.name; });
-  Diagram out;
-  out.name = part.name;
-  out.title = part.title;
+  Diagram out{.name = part.name, .title = part.title};
   const bool mote = &part == &kNames.front();
   const std::vector<Sample> samples =
       mote ? mote_samples(profile, step) : sink_samples(profile, step);

@@ -327,8 +327,7 @@ class Search {
   }
 
   Progress progress() const {
-    Progress p;
-    p.states = visited_.size();
+    Progress p{.states = visited_.size()};
     for (const auto& worker : workers_) p.transitions += worker->transitions;
     p.depth = depth_;
     for (const auto& worker : workers_) p.waiting += worker->next.states();
@@ -347,8 +346,7 @@ class Search {
     }
     // Of each state of the search the path has one of its orbit: the way on that leads to the orbit
     // of the next.
-    Path path;
-    path.violated = violated;
+    Path path{.violated = violated};
     Worker& worker = *workers_[0];
     World world = worker.network.initial();
     Packed kept = worker.packer.pack(world);
@@ -395,9 +393,7 @@ class Search {
   static Mask lowest(Mask mask) { return mask & (~mask + 1); }
 
   Result finish() {
-    Result result;
-    result.progress = progress();
-    result.violation = shortest_violation();
+    Result result{.progress = progress(), .violation = shortest_violation()};
     result.limit = result.violation ? "" : limit_;
     result.complete = !result.violation && *limit_ == '\0';
     double hashed = 0;

@@ -92,8 +92,7 @@ SiteId Packer::find(std::size_t node, const Site& site) {
 }
 
 Packed Packer::pack(const World& world, const World* other, const Packed& packed_other) {
-  Packed out;
-  out.doubled = static_cast<std::uint8_t>(world.doubled);
+  Packed out{.doubled = static_cast<std::uint8_t>(world.doubled)};
   const auto end_of = [](const World& of, std::size_t node, std::size_t i) {
     while (i < of.copies && of.copy[i].sender() == node) ++i;
     return i;
@@ -111,8 +110,7 @@ Packed Packer::pack(const World& world, const World* other, const Packed& packed
       out.site[node] = packed_other.site[node];
       i = end;
     } else {
-      Site site;
-      site.node = world.node[node];
+      Site site{.node = world.node[node]};
       for (; i < end; ++i) site.copy[site.copies++] = world.copy[i].frame();
       out.site[node] = find(node, site);
     }
@@ -143,8 +141,7 @@ SiteId Packer::renamed(std::size_t g, std::size_t node, SiteId id) {
   for (std::size_t i = 0; i < site.copies; ++i) {
     network_.put(air, Copy::of(symmetry.frame(site.copy[i], g), to));
   }
-  Site out;
-  out.node = symmetry.node(site.node, g);
+  Site out{.node = symmetry.node(site.node, g)};
   for (std::size_t i = 0; i < air.copies; ++i) out.copy[out.copies++] = air.copy[i].frame();
   if (id >= known.size()) known.resize(2 * std::size_t{id} + 64);
   const SiteId found = find(to, out);
@@ -153,8 +150,7 @@ SiteId Packer::renamed(std::size_t g, std::size_t node, SiteId id) {
 }
 
 Packed Packer::exchanged(const Packed& packed, std::size_t g) {
-  Packed out;
-  out.doubled = packed.doubled;
+  Packed out{.doubled = packed.doubled};
   for (std::size_t node = 0; node < count_; ++node) {
     out.site[sites_.symmetry.group()[g][node]] = renamed(g, node, packed.site[node]);
   }
@@ -166,8 +162,7 @@ std::size_t Packer::sort(Packed& packed) {
   const Packed given = packed;
   std::size_t same = 1;
   for (std::size_t g = 1; g < from_.size(); ++g) {
-    Packed other;
-    other.doubled = given.doubled;
+    Packed other{.doubled = given.doubled};
     bool less = false;
     std::size_t i = 0;
     for (; i < count_; ++i) {

@@ -52,8 +52,7 @@ class Step {
   /// Changes the state. Returns nothing if the event does not concern the part.
   std::optional<Transition> take(machine::State& state, const Given& given) {
     const std::optional<Trigger> trigger = part_.trigger_of(state, given);
-    Transition out;
-    out.from = part_.state_of(state);
+    Transition out{.from = part_.state_of(state)};
     one(state, given.event(), out);
     for (int i = 0; i < 64; ++i) {
       if (state.radio.sending && !state.radio.sending_ack_join) {
@@ -350,10 +349,7 @@ std::span<const PartName> part_names() {
 
 Diagram transitions_of(std::string_view name, const machine::Profile& profile, StepFunction step) {
   const PartInfo& part = part_named(name);
-  Diagram out;
-  out.name = part.name;
-  out.title = part.title;
-  out.states = part.states;
+  Diagram out{.name = part.name, .title = part.title, .states = part.states};
   Found found;
   if (part.networks == nullptr) out.complete = Alone(part, profile, step, found).run(out.worlds);
   std::vector<Options> networks;

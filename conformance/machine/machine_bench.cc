@@ -48,18 +48,8 @@ class Pair {
   State& node() { return mote_; }
 
  private:
-  static Config mote() {
-    Config config;
-    config.id = 2;
-    return config;
-  }
-  static Config sink() {
-    Config config;
-    config.role = Role::kSink;
-    config.id = 1;
-    config.island = 11;
-    return config;
-  }
+  static Config mote() { return {.id = 2}; }
+  static Config sink() { return {.role = Role::kSink, .id = 1, .island = 11}; }
   void to_sink() {
     const Transmit& frame = from_mote_.transmits()[0];
     step(sink_, now_, Heard{frame.frame()}, from_sink_);

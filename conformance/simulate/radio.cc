@@ -31,9 +31,7 @@ std::vector<std::uint8_t> data_frame(const machine::Frame& am, std::uint8_t dsn,
 }  // namespace
 
 std::size_t Radio::add_station(std::optional<NodeId> node, std::uint16_t am_address) {
-  Station station;
-  station.node = node;
-  station.am_address = am_address;
+  Station station{.node = node, .am_address = am_address};
   stations_.push_back(station);
   return stations_.size() - 1;
 }

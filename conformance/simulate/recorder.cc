@@ -126,22 +126,18 @@ void CaptureRecorder::write(Micros time_us, Packet& packet, std::string_view int
 }
 
 void CaptureRecorder::on_air(Micros time_us, std::size_t radio, Bytes frame) {
-  Packet packet;
-  packet.framing = Framing::kRadio;
-  packet.link_type = kLinkRadioFcs;
-  packet.fcs = fcs(frame);
-  packet.bytes = frame;
+  Packet packet{
+      .framing = Framing::kRadio, .bytes = frame, .link_type = kLinkRadioFcs, .fcs = fcs(frame)};
   write(time_us, packet, radio_names_.at(radio));
 }
 
 void CaptureRecorder::on_serial(Micros time_us, std::size_t line, bool to_sink,
                                 const SerialFrame& frame) {
-  Packet packet;
-  packet.framing = Framing::kHdlc;
-  packet.link_type = kLinkSerial;
-  packet.direction = to_sink ? Direction::kInbound : Direction::kOutbound;
-  packet.kind = frame.kind;
-  packet.serial_seq = frame.seq;
+  Packet packet{.framing = Framing::kHdlc,
+                .direction = to_sink ? Direction::kInbound : Direction::kOutbound,
+                .link_type = kLinkSerial,
+                .kind = frame.kind,
+                .serial_seq = frame.seq};
   std::uint16_t crc = crc16_step(0, frame.kind);
   if (frame.seq >= 0) crc = crc16_step(crc, static_cast<std::uint8_t>(frame.seq));
   packet.crc = crc16(frame.packet, crc);

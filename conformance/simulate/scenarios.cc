@@ -45,8 +45,7 @@ class Builder {
   }
 
   std::size_t radio(std::string name) {
-    RadioPlan plan;
-    plan.name = std::move(name);
+    RadioPlan plan{.name = std::move(name)};
     plan.faults.loss = options_.loss;
     plan.faults.duplication = options_.duplication;
     network_.radios.push_back(std::move(plan));
@@ -58,18 +57,15 @@ class Builder {
   /// Adds a sink, its base station, and the line between them. Letters tell islands apart.
   void island(char letter, std::uint16_t island, std::size_t radio, Script sink = {},
               Script base_station = {}) {
-    SerialPlan line;
-    line.name = std::string("ser") + letter;
-    line.sink = node(std::string("s") + letter, machine::Role::kSink, kSinkId, island, radio,
-                     std::move(sink));
-    line.base_station = node(std::string("b") + letter, machine::Role::kBaseStation, 0, island, 0,
-                             std::move(base_station));
+    SerialPlan line{.name = std::string("ser") + letter,
+                    .sink = node(std::string("s") + letter, machine::Role::kSink, kSinkId, island,
+                                 radio, std::move(sink)),
+                    .base_station = node(std::string("b") + letter, machine::Role::kBaseStation, 0,
+                                         island, 0, std::move(base_station))};
     network_.serials.push_back(std::move(line));
   }
   void anchor(std::size_t radio, std::uint8_t number) {
-    BeaconPlan beacon;
-    beacon.radio = radio;
-    beacon.am_address = static_cast<std::uint16_t>(200 + number);
+    BeaconPlan beacon{.radio = radio, .am_address = static_cast<std::uint16_t>(200 + number)};
     beacon.am_type = static_cast<std::uint8_t>(rubicon::AmType::kTemp);  // Release 1.0 uses it too.
     beacon.payload = {number};
     beacon.first_us = number * 10'000;  // One after the other.
@@ -81,8 +77,7 @@ class Builder {
  private:
   NodeId node(std::string name, machine::Role role, std::uint16_t id, std::uint16_t island,
               std::size_t radio, Script script) {
-    NodePlan plan;
-    plan.name = std::move(name);
+    NodePlan plan{.name = std::move(name)};
     plan.config.role = role;
     plan.config.id = id;
     plan.config.island = island;
@@ -102,21 +97,16 @@ class Builder {
 };
 
 Script joining(Micros join_us, machine::Descriptor descriptor) {
-  Script script;
-  script.join_us = join_us;
-  script.descriptor = descriptor;
-  return script;
+  return {.join_us = join_us, .descriptor = descriptor};
 }
 
 // Sends updates to the PC of its island, through the sink.
 ScriptedSend updates(std::uint16_t transducers, Micros period_us = kHalfSecondUs) {
-  ScriptedSend send;
-  send.dest = {kLocalPid, kNullDevid};
-  send.app_id = kControl;
-  send.readings_of = transducers;
-  send.first_us = period_us;
-  send.period_us = period_us;
-  return send;
+  return {.dest = {kLocalPid, kNullDevid},
+          .app_id = kControl,
+          .readings_of = transducers,
+          .first_us = period_us,
+          .period_us = period_us};
 }
 
 Script sensor(Micros join_us) {
@@ -126,14 +116,12 @@ Script sensor(Micros join_us) {
 }
 
 ScriptedSend reliable(Address dest, std::string_view text, Micros first_us, Micros period_us) {
-  ScriptedSend send;
-  send.dest = dest;
-  send.app_id = kControl;
-  send.reliable = true;
-  send.data = bytes_of(text);
-  send.first_us = first_us;
-  send.period_us = period_us;
-  return send;
+  return {.dest = dest,
+          .app_id = kControl,
+          .reliable = true,
+          .data = bytes_of(text),
+          .first_us = first_us,
+          .period_us = period_us};
 }
 
 // Paper: Fig. "Timeline of join and data acquisition", whose times are milliseconds; a period of
@@ -157,8 +145,7 @@ Network hospital(const ScenarioOptions& options) {
   constexpr std::uint8_t kAnchors = 10;
   Builder builder(options);
   const std::size_t air = builder.radio("rA");
-  Script sink;
-  sink.time_step_ticks = 500;
+  Script sink{.time_step_ticks = 500};
   for (std::uint16_t i = 0; i < kMotes; ++i) {
     const std::uint16_t id = static_cast<std::uint16_t>(kRobotId + i);
     const std::uint8_t size = id == kRobotId ? kAnchors : 1;
@@ -232,10 +219,9 @@ Network inter_island(const ScenarioOptions& options) {
     sink.sends = {reliable({there, mote_there}, "sink to mote", at(2000), us_of(2000)),
                   reliable({there, kSinkId}, "sink to sink", at(2200), us_of(2000)),
                   reliable({there, kNullDevid}, "sink to PC", at(2400), us_of(2000))};
-    Script pc;
-    pc.sends = {reliable({there, mote_there}, "PC to mote", at(2600), us_of(2000)),
-                reliable({there, kNullDevid}, "PC to PC", at(2800), us_of(2000)),
-                reliable({kLocalPid, mote_id}, "PC to own mote", at(3000), us_of(2000))};
+    Script pc{.sends = {reliable({there, mote_there}, "PC to mote", at(2600), us_of(2000)),
+                        reliable({there, kNullDevid}, "PC to PC", at(2800), us_of(2000)),
+                        reliable({kLocalPid, mote_id}, "PC to own mote", at(3000), us_of(2000))}};
     builder.island(letter, islands[i], air, std::move(sink), std::move(pc));
     Script mote = joining(0, kStandard);
     mote.sends = {reliable({there, mote_there}, "mote to mote", at(1000), us_of(2000)),

@@ -36,9 +36,7 @@ Outcome run(const char* name, const ScenarioOptions& options = {}) {
   TraceRecorder log(network, name);
   Simulation simulation(std::move(network), {&capture, &log});
   simulation.run_until(scenario->length_us);
-  Outcome result;
-  result.statistics = simulation.statistics();
-  result.log = log.file();
+  Outcome result{.statistics = simulation.statistics(), .log = log.file()};
   result.rtr = trace::print(result.log);
   result.pcapng = capture.finish();
   for (NodeId i = 0; i < simulation.network().nodes.size(); ++i) {

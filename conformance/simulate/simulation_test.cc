@@ -65,8 +65,7 @@ class Notes final : public Recorder {
 };
 
 NodePlan node(std::string name, Role role, std::uint16_t id, std::uint16_t island, Script script) {
-  NodePlan plan;
-  plan.name = std::move(name);
+  NodePlan plan{.name = std::move(name)};
   plan.config.role = role;
   plan.config.id = id;
   plan.config.island = island;
@@ -75,13 +74,8 @@ NodePlan node(std::string name, Role role, std::uint16_t id, std::uint16_t islan
 }
 
 ScriptedSend once(machine::Address dest, bool reliable, Micros at_us) {
-  ScriptedSend send;
-  send.dest = dest;
-  send.app_id = kControl;
-  send.reliable = reliable;
-  send.data = {1, 2, 3};
-  send.first_us = at_us;
-  return send;
+  return {
+      .dest = dest, .app_id = kControl, .reliable = reliable, .data = {1, 2, 3}, .first_us = at_us};
 }
 
 // Sink 0, base station 1, then motes 2, 3, ...; each mote joins at once.

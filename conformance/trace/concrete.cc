@@ -71,8 +71,7 @@ class Flatten {
   }
 
   void opaque(const Node& node, const reflect::Type& owner) {
-    Domain domain;
-    domain.kind = Domain::Kind::kBytes;
+    Domain domain{.kind = Domain::Kind::kBytes};
     Leaf& added = leaf(domain);
     added.bytes = bytes_of(node);
     for (int k = 0; k < owner.interpretation_count; ++k) {
@@ -223,10 +222,7 @@ std::optional<std::pair<std::uint16_t, std::uint16_t>> Concrete::pair(std::strin
 
 Concrete decode(const AmFrame& frame, LinkKind link) {
   if (!frame.packet.empty()) {
-    Concrete none;
-    none.name = "*";
-    none.frame = frame;
-    return none;
+    return {.name = "*", .frame = frame};
   }
   const reflect::Type* type = Schema::get().payload_type(link, frame.type);
   Concrete out;
@@ -238,17 +234,12 @@ Concrete decode(const AmFrame& frame, LinkKind link) {
 Concrete decode_raw(const AmFrame& frame) {
   const std::string payload(text_of({frame.payload.data(), frame.payload.size()}));
   const std::vector<AppField>& fields = Schema::get().find(kFrameName)->app->fields;
-  Concrete out;
-  out.name = kFrameName;
-  out.frame = frame;
+  Concrete out{.name = kFrameName, .frame = frame};
   Leaf type;
   type.path = "type";
   type.domain = Domain::of(fields[0]);
   type.number = frame.type;
-  Leaf bytes;
-  bytes.path = "payload";
-  bytes.domain = Domain::of(fields[1]);
-  bytes.bytes = payload;
+  Leaf bytes{.path = "payload", .domain = Domain::of(fields[1]), .bytes = payload};
   out.message =
       Message::named(kFrameName).with("type", type.show()).with("payload", Value::bytes(payload));
   Leaf size;
@@ -265,9 +256,7 @@ namespace {
 
 void put_leaf(const std::string& path, const Domain& domain, const Value& value, Place place,
               Concrete& out) {
-  Leaf leaf;
-  leaf.path = path;
-  leaf.domain = domain;
+  Leaf leaf{.path = path, .domain = domain};
   if (domain.kind == Domain::Kind::kBytes) {
     leaf.bytes = bytes_in(value, place);
   } else {
@@ -284,10 +273,9 @@ void put_pair(const AppField& field, const Value& value, Place place, Concrete& 
     throw TraceError(
         place, path + ": expected " + (address ? "an address, as 11:5" : "a channel, as 2->1"));
   }
-  Part part;
-  part.path = path;
-  part.kind = address ? Slot::Kind::kAddress : Slot::Kind::kChannel;
-  part.first = out.leaves.size();
+  Part part{.path = path,
+            .kind = address ? Slot::Kind::kAddress : Slot::Kind::kChannel,
+            .first = out.leaves.size()};
   part.end = part.first + 2;
   out.parts.push_back(std::move(part));
   put_leaf(path + (address ? ".pid" : ".src"), address ? Domain::pid() : Domain::devid(),
@@ -314,8 +302,7 @@ Concrete concrete(const Message& message, const Bindings& bindings) {
   if (message.form != Message::Form::kFields && !shape->app->fields.empty()) {
     throw TraceError(message.place, "'" + message.name + "' needs its fields");
   }
-  Concrete out;
-  out.name = message.name;
+  Concrete out{.name = message.name};
   if (message.form == Message::Form::kFields) out.message = Message::named(message.name);
   out.message.name = message.name;
   const std::vector<FieldValue> fields = with_paths(message, *shape);

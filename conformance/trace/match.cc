@@ -69,10 +69,7 @@ class Matcher {
 
   void am(const AmAddresses& addresses) {
     const auto side = [&](const Value& want, std::uint16_t id, const char* path) {
-      Leaf leaf;
-      leaf.path = path;
-      leaf.domain = Domain::devid();
-      leaf.number = id;
+      Leaf leaf{.path = path, .domain = Domain::devid(), .number = id};
       if (!is(want, leaf)) differ(path, describe(want), value_text(leaf.show()));
     };
     if (!seen_.frame) return differ("am", "a frame", seen_.name);
@@ -232,10 +229,9 @@ class Matcher {
   /// Returns the value to bind a variable to.
   Value plain(const Part& part) const {
     if (part.kind == Slot::Kind::kStruct) return Value::bytes(part.bytes);
-    Value value;
-    value.kind = part.kind == Slot::Kind::kAddress   ? Value::Kind::kAddress
-                 : part.kind == Slot::Kind::kChannel ? Value::Kind::kChannel
-                                                     : Value::Kind::kList;
+    Value value{.kind = part.kind == Slot::Kind::kAddress   ? Value::Kind::kAddress
+                        : part.kind == Slot::Kind::kChannel ? Value::Kind::kChannel
+                                                            : Value::Kind::kList};
     for (std::size_t i = part.first; i < part.end; ++i) {
       value.items.push_back(seen_.leaves[i].value());
     }

@@ -150,8 +150,7 @@ void parse_what(Scanner& in, Header& header) {
 /// Parses one or more headers in a line.
 void parse_headers(Scanner& in, std::vector<Item>& out) {
   do {
-    Header header;
-    header.place = in.place();
+    Header header{.place = in.place()};
     parse_what(in, header);
     in.skip_blanks();
     if (in.peek() != '%') header.comment = parse_comment(in);
@@ -257,9 +256,7 @@ class Parser {
         items.emplace_back(Blank{});
       }
     } else if (in.peek() == '#' || in.peek() == ';') {
-      Comment comment;
-      comment.marker = in.peek();
-      comment.indented = line.data() != in.rest().data();
+      Comment comment{.marker = in.peek(), .indented = line.data() != in.rest().data()};
       std::string_view text = in.rest().substr(1);
       while (text.ends_with(' ') || text.ends_with('\t')) text.remove_suffix(1);
       comment.text = text;

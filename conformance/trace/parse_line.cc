@@ -156,8 +156,7 @@ void parse_am(Scanner& in, Line& line) {
 
 // Reads a field with its path, or a value alone.
 FieldValue parse_field(Scanner& in) {
-  FieldValue field;
-  field.place = in.place();
+  FieldValue field{.place = in.place()};
   const std::string_view rest = in.rest();
   std::size_t size = 0;
   const auto in_path = [](char c) {
@@ -262,8 +261,7 @@ std::string parse_comment(Scanner& in) {
 }
 
 Message parse_message(Scanner& in) {
-  Message message;
-  message.place = in.place();
+  Message message{.place = in.place()};
   const std::string_view name = in.until(
       [](char c) { return c == ' ' || c == '\t' || c == '(' || c == '[' || c == ';' || c == '|'; });
   if (name.empty()) in.fail("expected a message");

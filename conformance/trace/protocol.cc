@@ -159,8 +159,7 @@ class AppReader {
 
   void role(const YAML::Node& key, const YAML::Node& node) {
     keys(node, "a role", {"links", "has", "doc"});
-    RoleInfo one;
-    one.name = word(key);
+    RoleInfo one{.name = word(key)};
     const YAML::Node links = need(node, "links", "a role");
     for (const std::string& link : words(links)) {
       if (link == "radio") {
@@ -210,9 +209,7 @@ class AppReader {
 
   void parameter(const YAML::Node& key, const YAML::Node& node) {
     keys(node, "a parameter", {"unit", "min", "max", "unstated", "decision", "doc"});
-    Parameter one;
-    one.id = static_cast<ParameterId>(out_.parameters.size());
-    one.name = word(key);
+    Parameter one{.id = static_cast<ParameterId>(out_.parameters.size()), .name = word(key)};
     for (const char* const taken : {"id", "island", "seed", "profile", "iut", "whole"}) {
       if (one.name == taken) fail(key, quoted(taken) + " has a meaning in all protocols");
     }

@@ -166,12 +166,7 @@ Domain Domain::of(const AppField& field) {
   return domain;
 }
 
-Domain Domain::pid() {
-  Domain domain;
-  domain.max = 0xFFFF;
-  domain.names = &rubicon::tables::enums::kPid;
-  return domain;
-}
+Domain Domain::pid() { return {.max = 0xFFFF, .names = &rubicon::tables::enums::kPid}; }
 
 Domain Domain::devid() {
   Domain domain = pid();

@@ -29,35 +29,19 @@ Value devid_value(std::uint16_t devid) {
 }
 
 Value of_kind(Value::Kind kind, std::string_view text) {
-  Value value;
-  value.kind = kind;
-  value.text = text;
-  return value;
+  return {.kind = kind, .text = std::string(text)};
 }
 
 Value pair(Value::Kind kind, Value first, Value second) {
-  Value value;
-  value.kind = kind;
-  value.items.push_back(std::move(first));
-  value.items.push_back(std::move(second));
-  return value;
+  return {.kind = kind, .items = {std::move(first), std::move(second)}};
 }
 
 }  // namespace
 
-Value Value::of(std::int64_t number) {
-  Value value;
-  value.kind = Kind::kNumber;
-  value.number = number;
-  return value;
-}
+Value Value::of(std::int64_t number) { return {.kind = Kind::kNumber, .number = number}; }
 
 Value Value::range(std::int64_t min, std::int64_t max) {
-  Value value;
-  value.kind = Kind::kRange;
-  value.number = min;
-  value.max = max;
-  return value;
+  return {.kind = Kind::kRange, .number = min, .max = max};
 }
 
 Value Value::range(std::string_view variable, std::int64_t min, std::int64_t max) {
@@ -96,10 +80,7 @@ Value Value::channel(std::uint32_t id) {
 }
 
 Value Value::list(std::vector<Value> items) {
-  Value value;
-  value.kind = Kind::kList;
-  value.items = std::move(items);
-  return value;
+  return {.kind = Kind::kList, .items = std::move(items)};
 }
 
 Value Value::but(Value value) {
@@ -108,10 +89,7 @@ Value Value::but(Value value) {
 }
 
 Message Message::named(std::string_view name) {
-  Message message;
-  message.name = name;
-  message.form = Form::kFields;
-  return message;
+  return {.name = std::string(name), .form = Form::kFields};
 }
 
 Message& Message::with(std::string_view path, Value value) & {

@@ -379,12 +379,10 @@ Packet StreamPacket::view() const {
 }
 
 PacketStream read_stream(InputFormat format, Bytes input) {
-  PacketStream stream;
-  stream.format = format;
+  PacketStream stream{.format = format};
   const std::unique_ptr<Reader> reader = make_reader(format);
   auto take = [&](const Packet& packet) {
-    StreamPacket kept;
-    kept.packet = packet;
+    StreamPacket kept{.packet = packet};
     kept.packet.bytes = Bytes();
     kept.packet.comment = {};
     kept.bytes.assign(packet.bytes.begin(), packet.bytes.end());
@@ -446,8 +444,7 @@ bool takes_serial(const PacketStream& stream) {
 
 StreamPacket make_packet(const generate::Generated& frame, const PacketStream& stream,
                          generate::Random& random) {
-  StreamPacket out;
-  out.bytes = frame.bytes;
+  StreamPacket out{.bytes = frame.bytes};
   Packet& packet = out.packet;
   const bool file = stream.format == InputFormat::kPcap || stream.format == InputFormat::kPcapng;
   if (frame.framing == Framing::kRadio && takes_radio(stream)) {

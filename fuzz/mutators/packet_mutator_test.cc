@@ -165,9 +165,7 @@ TEST(PacketMutator, AnswersRepeatWhatWasAsked) {
   std::size_t repeated = 0;
   PacketMutator one = mutator(1);
   for (int i = 0; i < 20'000; ++i) {
-    PacketStream stream;
-    stream.format = InputFormat::kSf;
-    stream.packets = {request};
+    PacketStream stream{.format = InputFormat::kSf, .packets = {request}};
     one.change(stream);
     if (stream.packets.size() < 2 || stream.packets[1].bytes.size() != 18) continue;
     const std::vector<std::uint8_t>& reply = stream.packets[1].bytes;

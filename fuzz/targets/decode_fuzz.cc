@@ -48,10 +48,8 @@ struct Printers {
 
   Printers() {
     for (unsigned i = 0; i < 8; ++i) {
-      format::TextOptions options;
-      options.hex = (i & 1) != 0;
-      options.color = (i & 2) != 0;
-      options.units = (i & 4) != 0;
+      format::TextOptions options{
+          .color = (i & 2) != 0, .hex = (i & 1) != 0, .units = (i & 4) != 0};
       text[i] = std::make_unique<format::TextFormatter>(protocol, options);
     }
     csv.begin(out);
@@ -76,8 +74,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::unique_ptr<Reader> reader = make_reader(input.format, options);
   if (reader == nullptr) return 0;  // Its format cannot be found out, or is JSON.
 
-  format::Record record;
-  record.frame = &printers.frame;
+  format::Record record{.frame = &printers.frame};
   auto take = [&](const Packet& packet) {
     printers.decoder.decode(packet, printers.frame);
     check_nodes(printers.frame.decoded);

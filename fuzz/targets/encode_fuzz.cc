@@ -37,10 +37,8 @@ std::string decoded(const OwnedPacket& owned, const reflect::Type* bare) {
   const Packet packet = owned.view();
   reflect::Frame frame;
   reflect::FrameDecoder(protocol(), bare).decode(packet, frame);
-  format::Record shown;
-  shown.interface_name = owned.interface_name;
-  shown.time_ns = packet.time_ns;
-  shown.frame = &frame;
+  format::Record shown{
+      .interface_name = owned.interface_name, .time_ns = packet.time_ns, .frame = &frame};
   format::Buffer out;
   format::JsonlFormatter(protocol(), false).print(shown, out);
   return std::string(out.view());

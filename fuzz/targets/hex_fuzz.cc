@@ -75,8 +75,7 @@ void check_writer(const std::vector<Kept>& packets, const ReaderOptions& options
     if (packet.framing == Framing::kHdlc) packet.framing = Framing::kSf;
     if (packet.framing == Framing::kRadio) packet.link_type = kLinkRadioNoFcs;
   }
-  ReaderOptions plain;
-  plain.hex_framing = options.hex_framing;
+  ReaderOptions plain{.hex_framing = options.hex_framing};
   if (plain.hex_framing == Framing::kHdlc) plain.hex_framing = Framing::kSf;
   HexReader reader(plain);
   std::vector<Kept> again = testing::read_all(reader, testing::view(written));
@@ -90,9 +89,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const Bytes input(data, size);
   const std::string text(input.begin(), input.end());
   for (const Framing framing : {Framing::kBare, Framing::kSf, Framing::kHdlc, Framing::kRadio}) {
-    ReaderOptions options;
-    options.hex_framing = framing;
-    options.hex_has_fcs = fuzz::hash_of(input) % 2 == 0;
+    ReaderOptions options{.hex_framing = framing, .hex_has_fcs = fuzz::hash_of(input) % 2 == 0};
     const auto make = [&] { return std::make_unique<HexReader>(options); };
     const std::vector<Kept> packets = fuzz::read_in_any_pieces(make, input);
     if (framing == Framing::kBare) check_lines(text, packets);

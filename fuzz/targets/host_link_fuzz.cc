@@ -37,12 +37,10 @@ class Host {
 
  private:
   static lines::HostLinkOptions options_of(fuzz::Input& input) {
-    lines::HostLinkOptions out;
-    out.ack_wait = lines::Milliseconds(1 + input.u8());
-    out.tries = 1 + static_cast<int>(input.below(200));
-    out.waiting_max = input.below(4);
-    out.listen_only = input.below(16) == 0;
-    return out;
+    return {.ack_wait = lines::Milliseconds(1 + input.u8()),
+            .tries = 1 + static_cast<int>(input.below(200)),
+            .waiting_max = input.below(4),
+            .listen_only = input.below(16) == 0};
   }
 
   void step() {

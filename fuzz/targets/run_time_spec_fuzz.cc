@@ -118,15 +118,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const reflect::Protocol& protocol = spec.protocol;
   const reflect::Type& type = *protocol.types[data[1] % protocol.type_count];
 
-  Packet packet;
-  packet.framing = Framing::kBare;
-  packet.bytes = Bytes(data + 2, size - 2);
+  Packet packet{.framing = Framing::kBare, .bytes = Bytes(data + 2, size - 2)};
   reflect::Frame frame;
   reflect::FrameDecoder(protocol, &type).decode(packet, frame);
   fuzz::check_nodes(frame.decoded);
 
-  format::Record record;
-  record.frame = &frame;
+  format::Record record{.frame = &frame};
   format::Buffer out{64};
   spec.text.print(record, out);
   fuzz::check_text(out.view(), false);

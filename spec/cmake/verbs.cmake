@@ -9,6 +9,12 @@ add_library(rubric_options INTERFACE)
 target_include_directories(rubric_options INTERFACE ${PROJECT_SOURCE_DIR})
 target_compile_features(rubric_options INTERFACE cxx_std_20)
 target_compile_options(rubric_options INTERFACE -Wall -Wextra -Wshadow -Wconversion)
+# They warn of what {.member = value} leaves to its default, too.
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  target_compile_options(rubric_options INTERFACE -Wno-missing-field-initializers)
+elseif(CMAKE_CXX_COMPILER_VERSION VERSION_GREATER_EQUAL 18)
+  target_compile_options(rubric_options INTERFACE -Wno-missing-designated-field-initializers)
+endif()
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   # It warns of overlap and bounds in its own std::string when it optimises (GCC bug 105651).
   target_compile_options(rubric_options INTERFACE -Wno-array-bounds -Wno-restrict

@@ -136,9 +136,7 @@ class Run {
     lost_ = false;
     lines::Line line(address, options_.listen_only);
     source_.format = format_name(line.format());
-    ReaderOptions reader_options;
-    reader_options.direction = Direction::kOutbound;
-    reader_options.interface_name = address.name;
+    ReaderOptions reader_options{.direction = Direction::kOutbound, .interface_name = address.name};
     while (!lines::stop_requested() && !result_.stopped) {
       const std::unique_ptr<Reader> reader = make_reader(line.format(), reader_options);
       try {
@@ -471,11 +469,11 @@ void add_input_options(Command& app, InputOptions& options) {
       .check(given);
 }
 
-void add_spec_option(Command& app, InputOptions& options, const std::string& names) {
+void add_spec_option(Command& app, InputOptions& options) {
   const std::string by_content =
       options.spec == kAutoSpec ? "; auto is rubicon, unless another decodes more of what is read"
                                 : "";
-  app.add_option(names, options.spec,
+  app.add_option("--spec", options.spec,
                  "Use this protocol above the AM layer: a name (list prints them; none shows bare "
                  "messages), a .ksy file, or several, as a,b: where two have an AM type, the "
                  "first of them has it" +

@@ -34,8 +34,8 @@ void add_input_options(Command& app, InputOptions& options);
 /// Adds --input-format, of which `bare` goes with --as, --fcs and --link-type.
 void add_capture_options(Command& app, InputOptions& options, bool bare = false);
 
-/// Adds --spec, under these names.
-void add_spec_option(Command& app, InputOptions& options, const std::string& names = "--spec");
+/// Adds --spec.
+void add_spec_option(Command& app, InputOptions& options);
 
 /// Adds --follow, --listen-only and --reconnect: for subcommands whose files may be lines in
 /// use (live/line.h). Without FILE, at a terminal, $MOTECOM is taken.

@@ -90,12 +90,11 @@ std::optional<std::int64_t> microseconds(const std::optional<double>& ms) {
 }  // namespace
 
 check::Options oracle_options(const CheckOptions& options) {
-  check::Options out;
-  out.deployed = options.profile == "deployed";
-  out.sniffer_complete = options.sniffer == "complete";
-  out.start_cold = options.start == "cold";
-  out.response_us = microseconds(options.response_ms);
-  out.ack_timeout_us = microseconds(options.ack_timeout_ms);
+  check::Options out{.deployed = options.profile == "deployed",
+                     .sniffer_complete = options.sniffer == "complete",
+                     .start_cold = options.start == "cold",
+                     .response_us = microseconds(options.response_ms),
+                     .ack_timeout_us = microseconds(options.ack_timeout_ms)};
   out.skew_us = microseconds(options.skew_ms).value_or(out.skew_us);
   out.stated = statement_of(options.stated);
   out.nodes = known_nodes(options);
@@ -149,8 +148,7 @@ report::KnownFailures expectations(const CheckOptions& options) {
 }
 
 check::AlignOptions align_options(const CheckOptions& options) {
-  check::AlignOptions out;
-  out.enabled = options.align == "auto";
+  check::AlignOptions out{.enabled = options.align == "auto"};
   out.skew_us = microseconds(options.skew_ms).value_or(out.skew_us);
   const trace::Statement stated = statement_of(options.stated);
   if (const std::int64_t* const ticks = find(stated, trace::ParameterId::kResponse)) {

@@ -117,15 +117,10 @@ void seen_step(machine::State& state, machine::Ticks now, const machine::Event& 
 // Explores small networks: two sinks and a lossy air in join scope, messages between a mote and its
 // sink.
 void explore(Coverage& coverage) {
-  explore::Options join;
-  join.step = seen_step;
-  join.sinks = 2;
+  explore::Options join{.step = seen_step, .sinks = 2};
   join.loss = join.dup = true;
   join.calls = 2;  // So that replies to the first meet the second.
-  explore::Options full;
-  full.step = seen_step;
-  full.scope = explore::Scope::kFull;
-  full.loss = true;
+  explore::Options full{.step = seen_step, .scope = explore::Scope::kFull, .loss = true};
   for (const explore::Options& options : {join, full}) {
     explore::Nodes nodes(options);
     explore::explore(nodes);

@@ -81,12 +81,11 @@ std::unique_ptr<format::Formatter> make_formatter(const DecodeOptions& options,
   if (options.format == "csv") {
     return std::make_unique<format::CsvFormatter>(protocol, std::move(fields));
   }
-  format::TextOptions text;
-  text.color = cli::use_color(options.color, 1);
-  text.hex = options.hex;
-  text.units = options.units;
-  text.width = options.width.value_or(cli::screen_columns(1));
-  text.fields = std::move(fields);
+  format::TextOptions text{.color = cli::use_color(options.color, 1),
+                           .hex = options.hex,
+                           .units = options.units,
+                           .width = options.width.value_or(cli::screen_columns(1)),
+                           .fields = std::move(fields)};
   return std::make_unique<format::TextFormatter>(protocol, std::move(text));
 }
 
@@ -265,10 +264,8 @@ class Decode {
   }
 
   bool take(const Packet& packet, const cli::Source& source) {
-    format::Record record;
-    record.index = index_++;
-    record.number = source.number;
-    record.interface_name = source.interface_name;
+    format::Record record{
+        .index = index_++, .number = source.number, .interface_name = source.interface_name};
     if (threads_) return threads_->add(packet, record);
     printer_.print(packet, record, output_.buffer(), sum_);
     if (!sum_.hints.empty()) say(std::exchange(sum_.hints, {}));

@@ -76,10 +76,7 @@ int run_forward(ForwardOptions& options) {
   std::uint64_t number = 0;
   if (!options.filter.empty()) {
     options.server.passes = [&](Bytes bytes) {
-      Packet packet;
-      packet.framing = Framing::kSf;
-      packet.direction = Direction::kOutbound;
-      packet.bytes = bytes;
+      Packet packet{.framing = Framing::kSf, .direction = Direction::kOutbound, .bytes = bytes};
       return filter.takes(packet, options.server.source.address.name, ++number);
     };
   }

@@ -351,7 +351,7 @@ void add_generate(cli::Command& app) {
   sub.add_option("--format", options->format, "Write hdlc, sf, pcapng, hex or jsonl")
       .one_of(container_names())
       .show_default();
-  cli::add_spec_option(sub, options->input, "--spec,--protocol");
+  cli::add_spec_option(sub, options->input);
   sub.add_option("--message", options->messages, "Make only these messages").check(cli::given);
   sub.add_option("-o,--output", options->output, "Write to this file; - is stdout")
       .check(cli::given)

@@ -112,6 +112,8 @@ std::string json(const Protocol& protocol) {
 void add_messages(cli::Command& app) {
   auto options = std::make_shared<MessagesOptions>();
   cli::Command& sub = app.add_subcommand("messages", "List the messages of a protocol");
+  sub.footer(
+      "Exit codes: 0 listed, 64 usage, 66 a .ksy file is wrong, 74 output cannot be written.");
   cli::add_spec_option(sub, options->input);
   sub.add_option("--format", options->format, "Print text or json")
       .one_of({"text", "json"})

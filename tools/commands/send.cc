@@ -72,10 +72,7 @@ lines::Address address_of(const SendOptions& options) {
 }
 
 lines::HostLinkOptions link_options(const SendOptions& options) {
-  lines::HostLinkOptions out;
-  out.ack_wait = Milliseconds{options.timeout_ms};
-  out.tries = options.retries + 1;
-  return out;
+  return {.ack_wait = Milliseconds{options.timeout_ms}, .tries = options.retries + 1};
 }
 
 std::unique_ptr<format::Formatter> make_formatter(const SendOptions& options,
@@ -83,8 +80,7 @@ std::unique_ptr<format::Formatter> make_formatter(const SendOptions& options,
   if (options.format == "jsonl") {
     return std::make_unique<format::JsonlFormatter>(protocol, false, std::vector<format::Path>{});
   }
-  format::TextOptions text;
-  text.color = cli::use_color(options.color, 1);
+  format::TextOptions text{.color = cli::use_color(options.color, 1)};
   return std::make_unique<format::TextFormatter>(protocol, std::move(text));
 }
 
@@ -228,12 +224,11 @@ class Send {
                               packet.error.fault == Fault::kNone;
     if (!options_.listen_s || confirmation) return;
     decoder_.decode(packet, frame_);
-    format::Record record;
-    record.index = frames_++;
-    record.number = frames_;
-    record.interface_name = name_;
-    record.time_ns = packet.time_ns;
-    record.frame = &frame_;
+    format::Record record{.index = frames_++,
+                          .number = frames_,
+                          .interface_name = name_,
+                          .time_ns = packet.time_ns,
+                          .frame = &frame_};
     formatter_->print(record, output_.buffer());
     // A closed pipe ends the listening; packets are sent all the same.
     if (!output_.flush() && listening_) lines::request_stop();

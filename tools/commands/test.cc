@@ -223,14 +223,13 @@ class Text {
 suite::SuiteRun work(const TestOptions& options, const suite::Cases& cases, suite::Plan plan,
                      const std::optional<suite::EarlierRun>& earlier, const suite::TextOptions& how,
                      Text& text) {
-  suite::SuiteRun all;
-  all.protocol = options.protocol;
-  all.traces = options.traces;
-  all.shard = options.shard;
-  all.app = options.app;
-  all.stated = statement_of(options.stated);
-  all.seed = options.seed.value_or(0);
-  all.rules_required = options.rules_required;
+  suite::SuiteRun all{.protocol = options.protocol,
+                      .seed = options.seed.value_or(0),
+                      .shard = options.shard,
+                      .app = options.app,
+                      .stated = statement_of(options.stated),
+                      .traces = options.traces,
+                      .rules_required = options.rules_required};
   const std::vector<std::string>& profiles = trace::protocol().profiles;
   all.profile = options.profile.empty() && !profiles.empty() ? profiles.front() : options.profile;
   targets::Options attached;
@@ -303,8 +302,7 @@ bool write_formats(const TestOptions& options, const suite::SuiteRun& run,
 int run_test(TestOptions options) {
   use_protocol(options.protocol, {options.profile}, options.traces);
   const suite::Cases cases = read_cases(options);
-  suite::Plan plan;
-  plan.expected = read_expected(options);
+  suite::Plan plan{.expected = read_expected(options)};
   const std::optional<suite::EarlierRun> earlier = read_earlier(options);
   check_seeds(options);
   for (const std::string& input : {options.expect, options.compare}) {
@@ -323,8 +321,7 @@ int run_test(TestOptions options) {
   statement_of(options.stated);
   for (const std::string& target : options.targets) {
     try {
-      targets::Options attached;
-      attached.app = options.app;
+      targets::Options attached{.app = options.app};
       targets::attach(target, attached);
     } catch (const std::invalid_argument& error) {
       throw cli::UsageError("--target", fmt::format("'{}': {}", target, error.what()));

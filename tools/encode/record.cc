@@ -1,5 +1,7 @@
 #include "tools/encode/record.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <cstdlib>
 #include <optional>
@@ -34,14 +36,7 @@ struct Difference {
   std::string in_b;
 };
 
-std::string hex(Bytes bytes) {
-  std::string text = "\"";
-  for (const std::uint8_t byte : bytes) {
-    text += "0123456789abcdef"[byte >> 4];
-    text += "0123456789abcdef"[byte & 15];
-  }
-  return text + '"';
-}
+std::string hex(Bytes bytes) { return fmt::format("\"{:02x}\"", fmt::join(bytes, "")); }
 
 std::string plain_number(const Field& field, std::int64_t value) {
   if (field.kind != Kind::kFloat) return std::to_string(value);

@@ -1,5 +1,6 @@
 #include "tools/encode/record.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <random>
@@ -81,15 +82,6 @@ Value serial_line() {
   return line;
 }
 
-std::string hex(const std::vector<std::uint8_t>& bytes) {
-  std::string text;
-  for (const std::uint8_t byte : bytes) {
-    text += "0123456789abcdef"[byte >> 4];
-    text += "0123456789abcdef"[byte & 15];
-  }
-  return text;
-}
-
 std::string outcome(const Value& line) {
   OwnedPacket packet;
   try {
@@ -97,7 +89,7 @@ std::string outcome(const Value& line) {
   } catch (const RecordError& error) {
     return error.what();
   }
-  return hex(packet.bytes);
+  return fmt::format("{:02x}", fmt::join(packet.bytes, ""));
 }
 
 constexpr const char* kRadioRaw = "4188072200020001003f0f000b000200000102c4f5";

@@ -65,17 +65,14 @@ std::vector<Kept> read_all(const std::string& input, InputFormat format) {
   format::JsonlFormatter formatter(kProtocol, false);
   format::Buffer buffer;
   auto keep = [&](const Packet& packet) {
-    Kept kept;
-    kept.packet = packet;
+    Kept kept{.packet = packet};
     kept.bytes.assign(reinterpret_cast<const char*>(packet.bytes.data()), packet.bytes.size());
     if (packet.interface_id < reader->interfaces().size()) {
       kept.interface_name = reader->interfaces()[packet.interface_id].name;
     }
     decoder.decode(packet, frame);
-    format::Record record;
-    record.interface_name = kept.interface_name;
-    record.time_ns = packet.time_ns;
-    record.frame = &frame;
+    format::Record record{
+        .interface_name = kept.interface_name, .time_ns = packet.time_ns, .frame = &frame};
     buffer.clear();
     formatter.print(record, buffer);
     kept.line = buffer.view();

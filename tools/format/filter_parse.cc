@@ -186,10 +186,7 @@ class FilterParser {
     return filter_.terms_.size() - 1;
   }
   static Term group(Term::Kind kind, std::vector<std::size_t> parts) {
-    Term term;
-    term.kind = kind;
-    term.parts = std::move(parts);
-    return term;
+    return {.kind = kind, .parts = std::move(parts)};
   }
 
   std::size_t any(int depth) {
@@ -264,10 +261,7 @@ class FilterParser {
     if (!op) fail("expected a comparison");
     advance();
     if (token_.kind != TokenKind::kWord) fail("expected a name");
-    Term term;
-    term.kind = Term::Kind::kCompare;
-    term.compare = mirrored(*op);
-    term.path = path(token_);
+    Term term{.kind = Term::Kind::kCompare, .path = path(token_), .compare = mirrored(*op)};
     const Token name = token_;
     token_ = literal;
     operand(term);

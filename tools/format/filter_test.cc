@@ -11,11 +11,6 @@ bool matches(std::string_view expression, const Sample& sample) {
   return Filter(expression, rubicon()).matches(sample.record);
 }
 
-struct Case {
-  const char* expression;
-  bool expected;
-};
-
 class FilterOfUpdates : public testing::Test {
  protected:
   FilterOfUpdates() : sample_(kUpdates, Framing::kHdlc) {
@@ -25,115 +20,53 @@ class FilterOfUpdates : public testing::Test {
     sample_.record.interface_name = "serial:1";
     sample_.packet.direction = Direction::kOutbound;
   }
-  void expect_all(const std::vector<Case>& cases) {
-    for (const Case& c : cases) {
-      EXPECT_EQ(matches(c.expression, sample_), c.expected) << c.expression;
-    }
+  using Expressions = std::initializer_list<const char*>;
+
+  void expect(Expressions to_hold, Expressions to_fail) {
+    for (const char* one : to_hold) EXPECT_TRUE(matches(one, sample_)) << one;
+    for (const char* one : to_fail) EXPECT_FALSE(matches(one, sample_)) << one;
   }
   Sample sample_;
 };
 
 TEST_F(FilterOfUpdates, compares_attributes) {
-  expect_all({
-      {"message==updates", true},
-      {"message == net_msg", false},
-      {"message!=net_msg", true},
-      {"path==net_msg", true},
-      {"path!=net_msg", false},
-      {"framing==hdlc", true},
-      {"direction==outbound", true},
-      {"direction==inbound", false},
-      {"interface==serial:1", true},
-      {"interface=='serial:2'", false},
-      {"interface!=\"serial:2\"", true},
-      {"index==12", true},
-      {"index<12", false},
-      {"index<=12", true},
-      {"number==3", true},
-      {"number==12", false},
-      {"index>11", true},
-      {"index>=13", false},
-      {"time==1.5", true},
-      {"time>1.4999", true},
-      {"am.type==28", true},
-      {"am.type==0x1c", true},
-      {"frame.kind==packet_noack", true},
-      {"frame.kind==69", true},
-      {"frame.serial_seq==0", false},
-      {"stale==beef", true},
-      {"stale=='BEEF'", true},
-      {"stale_bytes==2", true},
-      {"raw==00", false},
-  });
+  expect({"message==updates", "message!=net_msg", "path==net_msg", "framing==hdlc",
+          "direction==outbound", "interface==serial:1", "interface!=\"serial:2\""},
+         {"message == net_msg", "path!=net_msg", "direction==inbound", "interface=='serial:2'"});
+  expect({"index==12", "index<=12", "index>11", "number==3", "time==1.5", "time>1.4999"},
+         {"index<12", "index>=13", "number==12"});
+  expect({"am.type==28", "am.type==0x1c", "frame.kind==packet_noack", "frame.kind==69",
+          "stale==beef", "stale=='BEEF'", "stale_bytes==2"},
+         {"frame.serial_seq==0", "raw==00"});
 }
 
 TEST_F(FilterOfUpdates, compares_fields_by_the_tail_of_their_path) {
-  expect_all({
-      {"src.devid==2", true},
-      {"dest.devid==2", false},
-      {"devid==2", true},
-      {"dest.devid==null", true},
-      {"src.devid!=4", true},
-      {"devid!=2", false},
-      {"src.devid==dest.devid", false},
-      {"src.pid==dest.pid", true},
-      {"seq_num==0xb0d3", true},
-      {"net_msg.seq_num==45267", true},
-      {"payload.body.updates.value==302", true},
-      {"updates.value>6000", true},
-      {"updates.value>7000", false},
-      {"app_id==control_layer", true},
-      {"app_id==10", true},
-      {"app_id_name==control_layer", true},
-      {"fields.updates.value==1202", true},
-      {"4==src.devid", false},
-      {"2==src.devid", true},
-      {"1<src.devid", true},
-  });
+  expect(
+      {"src.devid==2", "devid==2", "dest.devid==null", "src.devid!=4", "src.pid==dest.pid",
+       "seq_num==0xb0d3", "net_msg.seq_num==45267", "payload.body.updates.value==302",
+       "updates.value>6000", "app_id==control_layer", "app_id==10", "app_id_name==control_layer",
+       "fields.updates.value==1202", "2==src.devid", "1<src.devid"},
+      {"dest.devid==2", "devid!=2", "src.devid==dest.devid", "updates.value>7000", "4==src.devid"});
 }
 
 TEST_F(FilterOfUpdates, tests_masks) {
-  expect_all({
-      {"transducer & temp", true},
-      {"transducer & mic", false},
-      {"transducer & mic|humid", true},
-      {"transducer & 0x40", true},
-      {"transducer & bit13", false},
-      {"transducer & 0x43 == 0x40", true},
-      {"transducer & temp == 2", true},
-      {"transducer & temp != 0", false},
-  });
+  expect({"transducer & temp", "transducer & mic|humid", "transducer & 0x40",
+          "transducer & 0x43 == 0x40", "transducer & temp == 2"},
+         {"transducer & mic", "transducer & bit13", "transducer & temp != 0"});
 }
 
 TEST_F(FilterOfUpdates, joins_and_negates) {
-  expect_all({
-      {"message==updates && src.devid==2", true},
-      {"message==updates && src.devid==4", false},
-      {"message==join_reply || src.devid==2", true},
-      {"!(message==join_reply) && !error", true},
-      {"message==join_reply && src.devid==2 || index==12", true},
-      {"message==join_reply && (src.devid==2 || index==12)", false},
-      {"not error and (index==12 or index==13)", true},
-      {"!!exists(time)", true},
-  });
+  expect(
+      {"message==updates && src.devid==2", "message==join_reply || src.devid==2",
+       "!(message==join_reply) && !error", "message==join_reply && src.devid==2 || index==12",
+       "not error and (index==12 or index==13)", "!!exists(time)"},
+      {"message==updates && src.devid==4", "message==join_reply && (src.devid==2 || index==12)"});
 }
 
 TEST_F(FilterOfUpdates, tests_presence) {
-  expect_all({
-      {"exists(src.devid)", true},
-      {"src.devid", true},
-      {"cur_time", false},
-      {"exists(error)", false},
-      {"error", false},
-      {"rubicon_ack", false},
-      {"updates", true},
-      {"stale", true},
-      {"notes", false},
-      {"direction", true},
-      {"cur_time==0", false},
-      {"cur_time!=0", false},
-      {"!(cur_time==0)", true},
-  });
+  expect(
+      {"exists(src.devid)", "src.devid", "updates", "stale", "direction", "!(cur_time==0)"},
+      {"cur_time", "exists(error)", "error", "rubicon_ack", "notes", "cur_time==0", "cur_time!=0"});
 }
 
 TEST(Filter, compares_errors_and_notes) {

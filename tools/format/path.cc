@@ -128,10 +128,7 @@ const Path::Target* Path::target(const Node& node) const {
 namespace {
 
 Value of_number(const Field& field, std::int64_t raw) {
-  Value value;
-  value.field = &field;
-  value.integer = raw;
-  value.kind = Value::Kind::kInteger;
+  Value value{.kind = Value::Kind::kInteger, .integer = raw, .field = &field};
   if (field.kind == Kind::kFloat) {
     value.kind = Value::Kind::kReal;
     value.real = static_cast<double>(float_of_bits(static_cast<std::uint32_t>(raw)));

@@ -33,8 +33,7 @@ TEST(Text, is_a_line_a_frame) {
 }
 
 TEST(Text, goes_on_below_where_a_line_is_too_long) {
-  TextOptions narrow;
-  narrow.width = 60;
+  TextOptions narrow{.width = 60};
   const Sample join(kJoinRequest, Framing::kBare, "join_request");
   const std::string plain = printed(join, narrow);
   EXPECT_EQ(plain,
@@ -57,8 +56,7 @@ TEST(Text, shows_structures_masks_and_units) {
   EXPECT_EQ(join,
             "     1 bare   join_request            seq_num=50421 mote_desc{mote_type=telosb_demo "
             "transducers=light|temp|humid|bit13 actuators=led}\n");
-  TextOptions units;
-  units.units = true;
+  TextOptions units{.units = true};
   EXPECT_THAT(printed(Sample("0001 18c4 04b2 012e 0003", Framing::kBare, "data"), units),
               HasSubstr(" temp=23.4degC "));
 }
@@ -81,15 +79,13 @@ TEST(Text, marks_notes_and_opaque_bytes) {
 }
 
 TEST(Text, selects_fields) {
-  TextOptions options;
-  options.fields = parse_paths("src.devid,updates.value,cur_time", rubicon());
+  TextOptions options{.fields = parse_paths("src.devid,updates.value,cur_time", rubicon())};
   EXPECT_EQ(printed(Sample(kUpdates), std::move(options)),
             "     1 src.devid=2 updates.value=302 6402 1202 cur_time=\n");
 }
 
 TEST(Text, colours_and_keeps_the_words) {
-  TextOptions options;
-  options.color = true;
+  TextOptions options{.color = true};
   const std::string line = printed(Sample(kUpdates), options);
   EXPECT_THAT(line, HasSubstr("\033[1;36mupdates\033[0m"));
   std::string plain;
@@ -111,8 +107,7 @@ TEST(Text, obeys_no_control_characters_of_its_input) {
 }
 
 TEST(Hexdump, names_the_owner_of_each_byte) {
-  TextOptions options;
-  options.hex = true;
+  TextOptions options{.hex = true};
   const Sample sample("00 ffff 0000 0e 00 1c 000b fffd 000b 0002 00 0001 02 030a beef");
   const std::string text = printed(sample, options);
   EXPECT_THAT(
@@ -124,8 +119,7 @@ TEST(Hexdump, names_the_owner_of_each_byte) {
 }
 
 TEST(Hexdump, marks_faults_and_stale_bytes_and_colours_fields) {
-  TextOptions options;
-  options.hex = true;
+  TextOptions options{.hex = true};
   const Sample bad("00 ffff 0000 0e 00 1c 000b fffd 000b 0002 02 0001 02 030a");
   EXPECT_THAT(printed(bad, options), HasSubstr("        0010  02 00 01 02 03 0a"));
   EXPECT_THAT(printed(bad, options), HasSubstr("\n               !\n"));

@@ -22,30 +22,11 @@ struct Value {
   std::size_t node = 0;                   ///< kNode: a structure or an array of structures.
 
   static Value of_integer(std::int64_t value, std::string_view name = {}) {
-    Value v;
-    v.kind = Kind::kInteger;
-    v.integer = value;
-    v.text = name;
-    return v;
+    return {.kind = Kind::kInteger, .integer = value, .text = name};
   }
-  static Value of_real(double value) {
-    Value v;
-    v.kind = Kind::kReal;
-    v.real = value;
-    return v;
-  }
-  static Value of_text(std::string_view value) {
-    Value v;
-    v.kind = Kind::kText;
-    v.text = value;
-    return v;
-  }
-  static Value of_bytes(Bytes value) {
-    Value v;
-    v.kind = Kind::kBytes;
-    v.bytes = value;
-    return v;
-  }
+  static Value of_real(double value) { return {.kind = Kind::kReal, .real = value}; }
+  static Value of_text(std::string_view value) { return {.kind = Kind::kText, .text = value}; }
+  static Value of_bytes(Bytes value) { return {.kind = Kind::kBytes, .bytes = value}; }
 };
 
 /// Takes values until it returns false.

@@ -10,6 +10,7 @@ import io
 import json
 import os
 import pty
+import re
 import subprocess
 import tempfile
 import unittest
@@ -122,7 +123,11 @@ class ExitCodes(ProgramTest):
                              words)
 
     def test_help_is_0(self):
-        self.assertEqual(run("--help").returncode, CLEAN)
+        done = run("--help")
+        self.assertEqual(done.returncode, CLEAN)
+        for command in re.findall(r"(?m)^  ([a-z-]+)   ", done.stdout.decode()):
+            # Each has a footer of its own.
+            self.assertNotIn(b"'rubric COMMAND --help'", run(command, "--help").stdout, command)
         self.assertIn("--filter", run("decode", "--help").stdout.decode())
         for words in (("--help",), ("decode", "--help"), ("check", "--help")):
             for line in run(*words).stdout.decode().splitlines():

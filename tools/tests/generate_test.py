@@ -104,7 +104,7 @@ class Generate(Folder):
 
     def test_another_protocol(self):
         for form in ("hdlc", "sf", "hex", "pcapng"):
-            file, expected = self.generate(form, "--protocol", "oscilloscope", "--count", "500")
+            file, expected = self.generate(form, "--spec", "oscilloscope", "--count", "500")
             self.assert_all_agree(decoded("--spec", "oscilloscope", str(file)), expected)
             self.assertIn("oscilloscope_msg", {wanted["message"] for wanted in expected})
 

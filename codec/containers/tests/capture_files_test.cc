@@ -324,12 +324,11 @@ TEST(WirePcapng, WriterIsReadBack) {
 }
 
 TEST(WirePcap, WriterIsReadBack) {
-  Packet packet;
-  packet.framing = Framing::kHdlc;
-  packet.kind = 0x43;
-  packet.serial_seq = 1;
-  packet.crc = 0x48be;
-  packet.time_ns = 1'234'567'890;
+  Packet packet{.framing = Framing::kHdlc,
+                .time_ns = 1'234'567'890,
+                .kind = 0x43,
+                .serial_seq = 1,
+                .crc = 0x48be};
   PcapWriter writer(kLinkSerial);
   std::string file;
   writer.begin(file);

@@ -179,9 +179,7 @@ std::vector<Kept> deframe_as_a_mote(Bytes stream) {
   for (std::size_t i = 0; i < stream.size(); ++i) {
     const HdlcEvent event = deframer.push(stream[i]);
     if (event != HdlcEvent::kNone) {
-      Packet packet;
-      packet.framing = Framing::kHdlc;
-      packet.offset_bytes = begin;
+      Packet packet{.framing = Framing::kHdlc, .offset_bytes = begin};
       // For a sound frame the buffer still holds the CRC after the content.
       const std::size_t crc_bytes = event == HdlcEvent::kFrame ? kSerialCrcBytes : 0;
       split_serial_content(Bytes(buffer, deframer.content().size() + crc_bytes), packet);
@@ -203,8 +201,7 @@ std::vector<Kept> comparable(const std::vector<Kept>& all) {
     if (fault == Fault::kCut) continue;
     out.push_back(kept);
     if (fault != Fault::kTooLong && fault != Fault::kAborted) continue;
-    Packet packet;
-    packet.framing = Framing::kHdlc;
+    Packet packet{.framing = Framing::kHdlc};
     packet.offset_bytes = kept.packet.offset_bytes;
     packet.error.fault = fault;
     out.back() = Kept(packet);

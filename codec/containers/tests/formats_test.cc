@@ -19,7 +19,7 @@ using namespace testing;
 struct Row {
   std::uint64_t offset;
   const char* bytes;
-  Error error;
+  Error error = kSound;
   std::uint64_t dropped = 0;
 };
 struct StreamCase {
@@ -48,18 +48,18 @@ void check(const StreamCase& row, InputFormat format, const std::string& input) 
 const StreamCase kSfCases[] = {
     {"Nothing", "", {}},
     {"HandshakeAlone", "55 20", {}},
-    {"TwoPackets", "55 20 02 00 11 01 33", {{2, "00 11", kSound}, {5, "33", kSound}}},
-    {"HigherVersion", "55 21 01 33", {{2, "33", kSound}}},
+    {"TwoPackets", "55 20 02 00 11 01 33", {{2, "00 11"}, {5, "33"}}},
+    {"HigherVersion", "55 21 01 33", {{2, "33"}}},
     {"LowerVersion",
      "55 1f 00",
      {{0, "55 1f", {Fault::kHandshake, 1, "WIRE-SF-HANDSHAKE"_rule}},
       {0, "1f 00", {Fault::kCut, 3, "WIRE-SF-LENGTH"_rule}, 0x53}}},
     {"NoHandshake",
      "02 00 11",
-     {{0, "02", {Fault::kHandshake, 0, "WIRE-SF-HANDSHAKE"_rule}}, {0, "00 11", kSound}}},
+     {{0, "02", {Fault::kHandshake, 0, "WIRE-SF-HANDSHAKE"_rule}}, {0, "00 11"}}},
     {"EmptyPacket",
      "55 20 00 01 33",
-     {{2, "", {Fault::kEmpty, 0, "WIRE-SF-LENGTH"_rule}}, {3, "33", kSound}}},
+     {{2, "", {Fault::kEmpty, 0, "WIRE-SF-LENGTH"_rule}}, {3, "33"}}},
     {"CutInHandshake", "55", {{0, "", {Fault::kCut, 1, "WIRE-SF-HANDSHAKE"_rule}, 1}}},
     {"CutInPacket", "55 20 04 00 11", {{2, "00 11", {Fault::kCut, 3, "WIRE-SF-LENGTH"_rule}, 2}}},
     {"CutBehindLength", "55 20 04", {{2, "", {Fault::kCut, 1, "WIRE-SF-LENGTH"_rule}, 4}}},
@@ -70,17 +70,15 @@ TEST(WireSfLength, WhatCanBeInAStream) {
 }
 
 const StreamCase kHexCases[] = {
-    {"Listen", "00 FF FF 00\n00 01\n", {{0, "00ffff00", kSound}, {12, "0001", kSound}}},
-    {"Unbroken", "00ffFF00\r\n", {{0, "00ffff00", kSound}}},
-    {"Prefixed", "0x00 0XfF 0x0001", {{0, "00ff0001", kSound}}},
-    {"CommentsAndBlanks", "# a\n\n  \n\t00 11 # b\n#", {{8, "0011", kSound}}},
-    {"NoEndOfLine", "0011", {{0, "0011", kSound}}},
+    {"Listen", "00 FF FF 00\n00 01\n", {{0, "00ffff00"}, {12, "0001"}}},
+    {"Unbroken", "00ffFF00\r\n", {{0, "00ffff00"}}},
+    {"Prefixed", "0x00 0XfF 0x0001", {{0, "00ff0001"}}},
+    {"CommentsAndBlanks", "# a\n\n  \n\t00 11 # b\n#", {{8, "0011"}}},
+    {"NoEndOfLine", "0011", {{0, "0011"}}},
     {"NoHex",
      "00 1g\n22\n",
-     {{0, "3030203167", {Fault::kUnexpected, 4, "WIRE-HEX"_rule}}, {6, "22", kSound}}},
-    {"OddDigits",
-     "001\n22",
-     {{0, "303031", {Fault::kUnexpected, 3, "WIRE-HEX"_rule}}, {4, "22", kSound}}},
+     {{0, "3030203167", {Fault::kUnexpected, 4, "WIRE-HEX"_rule}}, {6, "22"}}},
+    {"OddDigits", "001\n22", {{0, "303031", {Fault::kUnexpected, 3, "WIRE-HEX"_rule}}, {4, "22"}}},
     {"SingleDigit", "0 1", {{0, "302031", {Fault::kUnexpected, 1, "WIRE-HEX"_rule}}}},
     {"PrefixAlone", "00 0x", {{0, "3030203078", {Fault::kUnexpected, 5, "WIRE-HEX"_rule}}}},
     {"PrefixInsideAByte",
@@ -109,10 +107,8 @@ TEST(WireHex, LongLinesAndPackets) {
 }
 
 TEST(WireHex, OtherFramings) {
-  ReaderOptions options;
-  options.hex_framing = Framing::kHdlc;
-  options.direction = Direction::kInbound;
-  options.interface_name = "typed";
+  ReaderOptions options{
+      .direction = Direction::kInbound, .interface_name = "typed", .hex_framing = Framing::kHdlc};
   auto reader = make_reader(InputFormat::kHex, options);
   const std::vector<Kept> serial = read_all(*reader, view("43 01 be 48\n"));
   ASSERT_EQ(serial.size(), 1u);
@@ -263,12 +259,12 @@ struct PpiCase {
   std::size_t cut;  // Bytes that the capture lacks.
   std::uint64_t offset;
   const char* bytes;
-  Error error;
+  Error error = kSound;
 };
 TEST(WirePcap, ARecordAfterAPpiHeader) {
   const PpiCase rows[] = {
-      {"0000 0800 c3000000  02 00 01 31 a4", 0, 8, "020001", kSound},
-      {"0000 0c00 e6000000  aabbccdd 02 00 01", 0, 12, "020001", kSound},
+      {"0000 0800 c3000000  02 00 01 31 a4", 0, 8, "020001"},
+      {"0000 0c00 e6000000  aabbccdd 02 00 01", 0, 12, "020001"},
       {"0000 0800 c3000000  02 00 01", 2, 8, "020001", {Fault::kCut, 3, ReqId::kNone}},
       {"0000 0800 c3", 0, 0, "00000800c3", {Fault::kTruncated, 5, "WIRE-PCAP"_rule}},
       {"0000 0800 c3", 9, 0, "00000800c3", {Fault::kCut, 5, ReqId::kNone}},
@@ -314,43 +310,33 @@ struct RadioCase {
   std::uint64_t offset;
   const char* bytes;
   int fcs;
-  Error error;
+  Error error = kSound;
 };
 // A record whose bytes are kept as they are, with an error.
 RadioCase refused(const char* name, std::uint16_t link_type, const char* record, Fault fault,
                   std::uint32_t offset, ReqId rule) {
   return {name, link_type, record, 0, record, kAbsent, {fault, offset, rule}};
 }
+constexpr Error kWrongFcs{Fault::kFcs, 3, "WIRE-RADIO-FCS"_rule};
 const RadioCase kRadioCases[] = {
-    {"WithFcs", 195, "02 00 01 31 a4", 0, "02 00 01", 0xa431, kSound},
-    {"WrongFcs",
-     195,
-     "02 00 01 31 a5",
-     0,
-     "02 00 01",
-     0xa531,
-     {Fault::kFcs, 3, "WIRE-RADIO-FCS"_rule}},
+    {"WithFcs", 195, "02 00 01 31 a4", 0, "02 00 01", 0xa431},
+    {"WrongFcs", 195, "02 00 01 31 a5", 0, "02 00 01", 0xa531, kWrongFcs},
     refused("NoRoomForFcs", 195, "02", Fault::kTooShort, 1, "WIRE-RADIO-FCS"_rule),
     refused("Empty", 195, "", Fault::kEmpty, 0, "WIRE-RADIO-HEADER"_rule),
-    {"NoFcs", 230, "02 00 01", 0, "02 00 01", kAbsent, kSound},
+    {"NoFcs", 230, "02 00 01", 0, "02 00 01", kAbsent},
     refused("NoFcsEmpty", 230, "", Fault::kEmpty, 0, "WIRE-RADIO-HEADER"_rule),
     {"TapFcs16", 283, "00 00 0c 00  00 00 01 00 01 00 00 00  02 00 01 31 a4", 12, "02 00 01",
-     0xa431, kSound},
-    {"TapWrongFcs16",
-     283,
-     "00 00 0c 00  00 00 01 00 01 00 00 00  02 00 01 31 a5",
-     12,
-     "02 00 01",
-     0xa531,
-     {Fault::kFcs, 3, "WIRE-RADIO-FCS"_rule}},
+     0xa431},
+    {"TapWrongFcs16", 283, "00 00 0c 00  00 00 01 00 01 00 00 00  02 00 01 31 a5", 12, "02 00 01",
+     0xa531, kWrongFcs},
     {"TapNoFcs", 283, "00 00 0c 00  00 00 01 00 00 00 00 00  02 00 01", 12, "02 00 01", kAbsent,
      kSound},
     {"TapOtherField", 283,
      "00 00 14 00  01 00 04 00 00 00 00 c2  00 00 01 00 01 00 00 00  02 00 01 31 a4", 20,
-     "02 00 01", 0xa431, kSound},
+     "02 00 01", 0xa431},
     {"TapUnpaddedLast", 283, "00 00 09 00  00 00 01 00 01  02 00 01 31 a4", 9, "02 00 01", 0xa431,
      kSound},
-    {"TapNoFields", 283, "00 00 04 00  02 00 01", 4, "02 00 01", kAbsent, kSound},
+    {"TapNoFields", 283, "00 00 04 00  02 00 01", 4, "02 00 01", kAbsent},
     refused("TapFcs32", 283, "00 00 0c 00  00 00 01 00 02 00 00 00  02", Fault::kUnsupported, 8,
             "WIRE-RADIO-TAP"_rule),
     refused("TapFcsUnknown", 283, "00 00 0c 00  00 00 01 00 03 00 00 00", Fault::kUnexpected, 8,
@@ -423,17 +409,9 @@ TEST(WirePcapng, Times) {
 
 TEST(Writers, TakeWhatTheyCanHold) {
   const std::string ack_packet = from_hex("00 ff ff 00 00 03 00 25 63 00 0c");
-  Packet sf;
-  sf.framing = Framing::kSf;
-  sf.bytes = view(ack_packet);
-  Packet serial_ack;
-  serial_ack.framing = Framing::kHdlc;
-  serial_ack.kind = 0x43;
-  serial_ack.serial_seq = 1;
-  serial_ack.crc = 0x48be;
-  Packet radio;
-  radio.framing = Framing::kRadio;
-  radio.bytes = view(ack_packet);
+  Packet sf{.framing = Framing::kSf, .bytes = view(ack_packet)};
+  Packet serial_ack{.framing = Framing::kHdlc, .kind = 0x43, .serial_seq = 1, .crc = 0x48be};
+  Packet radio{.framing = Framing::kRadio, .bytes = view(ack_packet)};
   Packet bad = sf;
   bad.error = Error{Fault::kUnexpected, 0, "WIRE-HEX"_rule};
   const struct {
@@ -482,13 +460,10 @@ TEST(Writers, HexLinesReadBackAsPackets) {
   };
   for (const auto& row : rows) {
     const std::string bytes = from_hex(row.bytes);
-    Packet packet;
-    packet.framing = Framing::kSf;
-    packet.bytes = view(bytes);
+    Packet packet{.framing = Framing::kSf, .bytes = view(bytes)};
     std::string text;
     EXPECT_EQ(HexWriter().write(packet, text), row.taken) << row.bytes;
-    ReaderOptions options;
-    options.hex_framing = Framing::kSf;
+    ReaderOptions options{.hex_framing = Framing::kSf};
     HexReader reader(options);
     const std::vector<Kept> again = read_all(reader, view(text));
     ASSERT_EQ(again.size(), row.taken ? 1U : 0U) << row.bytes;

@@ -51,13 +51,13 @@ inline std::string read_file(const std::string& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// A packet that outlives its callback, comparable in every field.
 /// Returns the facts that a writer keeps.
 inline RadioFacts kept_facts(RadioFacts facts) {
   facts.more = false;
   return facts;
 }
 
+/// A packet that outlives its callback, comparable in every field.
 struct Kept {
   Packet packet;  // Its bytes and comment point into the strings below.
   std::string bytes;

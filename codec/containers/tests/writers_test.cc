@@ -175,9 +175,7 @@ TEST(WirePcap, TimesBeyondTheFormatAreItsLast) {
 }
 
 TEST(WirePcap, DamageIsNoRecord) {
-  Packet damage;
-  damage.bytes = view(kTap);
-  damage.error = Error{Fault::kContainer, 8, "WIRE-PCAP"_rule};
+  Packet damage{.bytes = view(kTap), .error = Error{Fault::kContainer, 8, "WIRE-PCAP"_rule}};
   PcapWriter writer(0);
   std::string written;
   EXPECT_FALSE(writer.write(damage, written));

@@ -26,13 +26,12 @@ Bytes as_bytes(const std::string& text) {
 
 std::string sound_datagram(std::int64_t time_ns = 1'700'000'000'123'456'789) {
   static const std::vector<std::uint8_t> frame = frame_with_fcs();
-  ZepPacket zep;
-  zep.channel = 17;
-  zep.device = 0x0102;
-  zep.lqi = 200;
-  zep.time_ns = time_ns;
-  zep.sequence = 0x01020304;
-  zep.frame = Bytes(frame.data(), frame.size());
+  ZepPacket zep{.channel = 17,
+                .device = 0x0102,
+                .lqi = 200,
+                .time_ns = time_ns,
+                .sequence = 0x01020304,
+                .frame = Bytes(frame.data(), frame.size())};
   std::string out;
   append_zep(zep, out);
   return out;
@@ -133,9 +132,7 @@ TEST(Zep, VersionOneHasAShorterHeader) {
 }
 
 TEST(Zep, AnAckCarriesNoFrame) {
-  ZepPacket ack;
-  ack.type = ZepPacket::Type::kAck;
-  ack.sequence = 77;
+  ZepPacket ack{.type = ZepPacket::Type::kAck, .sequence = 77};
   std::string datagram;
   append_zep(ack, datagram);
   EXPECT_EQ(datagram, std::string("EX\2\2\0\0\0\x4D", 8));
@@ -190,8 +187,7 @@ TEST(ZepOverUdp, IsFoundBehindEveryLinkHeader) {
       {kLinkRawIp, ipv4(udp(sound_datagram(), 17755))},
   };
   for (const auto& row : kRecords) {
-    Packet packet;
-    packet.time_ns = 5;
+    Packet packet{.time_ns = 5};
     decode_record(as_bytes(row.record), row.record.size(), row.link_type, "WIRE-PCAP"_rule, packet);
     EXPECT_EQ(packet.error.fault, Fault::kNone) << row.link_type;
     EXPECT_EQ(packet.framing, Framing::kRadio);

@@ -63,8 +63,7 @@ std::optional<std::uint16_t> Given::sink_am() const {
 }
 
 Contradiction role_contradiction(std::uint16_t am, Role role, Role shown, std::uint32_t index) {
-  Contradiction out;
-  out.index = index;
+  Contradiction out{.index = index};
   if (role == Role::kMote) out.requirement = "J10-MOTE"_rule;
   if (role == Role::kSink) out.requirement = "J10-SINK"_rule;
   out.text = "AM address " + std::to_string(am) + " was given as a " + name_of(role) +
@@ -119,8 +118,7 @@ std::vector<Contradiction> island_contradictions(const Run& run, const Given& gi
       return s.am == node.id && std::none_of(given.nodes().begin(), given.nodes().end(), said);
     });
     if (other == shown.end()) continue;
-    Contradiction one;
-    one.index = other->index;
+    Contradiction one{.index = other->index};
     if (run.seen[one.index].frame.type == am::kJoinReply) one.requirement = "J3-ADDRESS"_rule;
     one.text = "The sink with AM address " + std::to_string(node.id) + " was given island " +
                std::to_string(node.island) + ", but acts for island " +

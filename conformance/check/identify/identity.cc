@@ -257,13 +257,12 @@ class Identifier {
         device_of_stream_[i] = before;
         continue;
       }
-      Device device;
-      device.am = stream.am;
-      device.role = role_of(stream);
-      device.island = stream.sink ? stream.first_island : kNoIsland;
-      device.judged = may_be_judged(stream.am);
-      device.known = !is_tester(stream.am) &&
-                     (named || ((before == kNobody || another) && !answers_nothing(stream)));
+      Device device{.am = stream.am,
+                    .role = role_of(stream),
+                    .island = stream.sink ? stream.first_island : kNoIsland,
+                    .known = !is_tester(stream.am) && (named || ((before == kNobody || another) &&
+                                                                 !answers_nothing(stream))),
+                    .judged = may_be_judged(stream.am)};
       take_stream(device, stream);
       device_of_stream_[i] = add(device);
     }
@@ -448,10 +447,7 @@ class Identifier {
       out_.devices[sink].partner = static_cast<std::uint16_t>(i);
       return;
     }
-    Device base;
-    base.role = Role::kBaseStation;
-    base.island = island;
-    base.partner = sink;
+    Device base{.role = Role::kBaseStation, .island = island, .partner = sink};
     base.judged = may_be_judged(0);  // A host's AM source is 0.
     const std::uint16_t made = add(base);
     out_.devices[sink].partner = made;

@@ -210,9 +210,7 @@ std::uint16_t Streams::open(std::uint32_t index, const IslandHint& hint) {
     ++left_out_;
     return kNobody;
   }
-  Stream stream;
-  stream.am = seen.frame.src;
-  stream.dsn = seen.dsn;
+  Stream stream{.am = seen.frame.src, .dsn = seen.dsn};
   const std::optional<machine::Role> said = given_.role(stream.am);
   const bool usual = stream.am == sink_am_ || stream.am == machine::Profile{}.sink_id;
   const bool named = said ? *said == machine::Role::kSink : usual;

@@ -22,10 +22,9 @@ using ::testing::Not;
 constexpr const char* kCapture = "spec/captures/firmware/d2_lose_reply.pcapng";
 
 Finding finding(ReqId requirement, Severity severity, std::uint64_t frame, std::string text) {
-  Finding out;
-  out.requirement = requirement;
-  out.severity = severity;
-  out.place = {0, frame, 100 * frame, static_cast<std::int64_t>(frame) * 1000};
+  Finding out{.requirement = requirement,
+              .severity = severity,
+              .place = {0, frame, 100 * frame, static_cast<std::int64_t>(frame) * 1000}};
   out.last = out.place;
   out.node = "mote 2";
   out.text = std::move(text);
@@ -34,8 +33,7 @@ Finding finding(ReqId requirement, Severity severity, std::uint64_t frame, std::
 }
 
 check::Report report_of(std::vector<Finding> findings) {
-  check::Report out;
-  out.findings = std::move(findings);
+  check::Report out{.findings = std::move(findings)};
   for (const Finding& one : out.findings) {
     if (one.severity == Severity::kFail) out.verdict = check::Verdict::kFail;
   }
@@ -45,13 +43,11 @@ check::Report report_of(std::vector<Finding> findings) {
 }
 
 check::Run run_of(std::uint64_t frames) {
-  check::Run run;
-  run.files = {"folder/a.pcapng"};
+  check::Run run{.files = {"folder/a.pcapng"}};
   run.taps.resize(1);
   for (std::uint64_t i = 1; i <= frames; ++i) {
-    check::Observation seen;
-    seen.kind = check::Observation::Kind::kDamaged;
-    seen.place = {0, i, 100 * i, static_cast<std::int64_t>(i) * 1000};
+    check::Observation seen{.kind = check::Observation::Kind::kDamaged,
+                            .place = {0, i, 100 * i, static_cast<std::int64_t>(i) * 1000}};
     run.seen.push_back(seen);
   }
   run.start_us = 1000;
@@ -195,8 +191,7 @@ TEST(Ranges, AreRead) {
 
 TEST(Windows, PartsDoNotStartCold) {
   const check::Run run = run_of(9);
-  check::Options options;
-  options.start_cold = true;
+  check::Options options{.start_cold = true};
   check::Run part = part_of(run, {{0, 1, 5}}, options);
   EXPECT_TRUE(options.start_cold);
   EXPECT_EQ(part.end_us, 5000);

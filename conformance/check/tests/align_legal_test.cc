@@ -32,10 +32,8 @@ void judge_apart(const std::string& variant, std::uint64_t seed, Count& count) {
   for (const double ahead_s : kAhead_s) {
     for (const bool stamps : {true, false}) {
       if (!stamps && ahead_s != kAhead_s[0]) continue;
-      SerialClock clock;
-      clock.ahead_s = ahead_s;
-      clock.drift_ppm = static_cast<double>(seed % 3) * 25;
-      clock.stamps = stamps;
+      SerialClock clock{
+          .ahead_s = ahead_s, .drift_ppm = static_cast<double>(seed % 3) * 25, .stamps = stamps};
       const check::Run run = put_together(take_apart(bytes, clock));
       const std::string fact = aligned_fact(run);
       ++count.runs;

@@ -39,10 +39,7 @@ struct Tapes {
   }
   // Sends number `seq_num` on the air at `s`, on the line 10 ms later; either may not be recorded.
   void forward(double s, std::uint16_t seq_num, bool on_air, bool on_line) {
-    NetFields net;
-    net.dest = {11, machine::kNullDevid};
-    net.src = {11, 2};
-    net.seq_num = seq_num;
+    NetFields net{.dest = {11, machine::kNullDevid}, .src = {11, 2}, .seq_num = seq_num};
     if (on_air) script.net(1000 * s, 2, 1, net);
     if (on_line) script.up(1000 * s + 10, net.forwarded());
   }
@@ -56,8 +53,7 @@ std::int64_t first_on_line(const check::Run& run) {
 }
 
 TEST(AlignRefused, TheSameFrameOverAndOver) {
-  Tapes tapes;
-  tapes.line_ahead_us = 40 * kSecondUs + 300'000;
+  Tapes tapes{.line_ahead_us = 40 * kSecondUs + 300'000};
   for (int i = 0; i < 100; ++i) tapes.forward(i, 7, i < 80, i >= 20);
   check::Run run = tapes.run();
   const std::int64_t before_us = first_on_line(run);
@@ -72,8 +68,7 @@ TEST(AlignRefused, TheSameFrameOverAndOver) {
 TEST(AlignRefused, LivesThatAreAllTheSame) {
   for (const int lives_on_air : {1, 2, 5}) {
     for (const int first_on_the_line : {0, 1, 2}) {
-      Tapes tapes;
-      tapes.line_ahead_us = -500 * kSecondUs;
+      Tapes tapes{.line_ahead_us = -500 * kSecondUs};
       for (int i = 0; i < 70; ++i) {
         const int life = i / 10;
         tapes.forward(i, static_cast<std::uint16_t>(i % 10), life < lives_on_air,
@@ -110,8 +105,7 @@ TEST(AlignRefused, TwoShiftsThatFitEquallyWell) {
 
 TEST(AlignRefused, LessThanThreeFrames) {
   for (const int count : {1, 2}) {
-    Tapes tapes;
-    tapes.line_ahead_us = 7 * kSecondUs;
+    Tapes tapes{.line_ahead_us = 7 * kSecondUs};
     for (int i = 0; i < count; ++i) tapes.forward(i, static_cast<std::uint16_t>(i), true, true);
     check::Run run = tapes.run();
     align(run, {});
@@ -133,8 +127,7 @@ TEST(AlignRefused, WhatNoClockDoes) {
 
 // Some frames agree by chance while most of the time says otherwise.
 TEST(AlignRefused, FewerFramesThanThoseThatAreMissing) {
-  Tapes tapes;
-  tapes.line_ahead_us = 500 * kSecondUs;
+  Tapes tapes{.line_ahead_us = 500 * kSecondUs};
   for (int i = 0; i < 60; ++i) {
     const bool both = i % 10 == 0;
     tapes.forward(i, static_cast<std::uint16_t>(i), true, both);
@@ -152,22 +145,18 @@ TEST(AlignRefused, TheAirOfOneRunAndTheLineOfAnother) {
     for (const std::string& line : names) {
       if (air == line) continue;
       for (const bool stamps : {true, false}) {
-        SerialClock clock;
-        clock.ahead_s = 777;
-        clock.stamps = stamps;
+        SerialClock clock{.ahead_s = 777, .stamps = stamps};
         const Apart of_air = take_apart(capture(air), {});
         const Apart of_line = take_apart(capture(line), clock);
         const check::Run run = together({of_air.parts[0], of_line.parts[1]});
         EXPECT_NE(aligned_fact(run).find("not aligned"), std::string::npos)
             << air << " " << line << ": " << aligned_fact(run);
         EXPECT_TRUE(run.loose.empty());
-        Options options;
-        options.sniffer_complete = true;
+        Options options{.sniffer_complete = true};
         const auto alone = findings_of(judge(together({of_air.parts[0]}), options), nullptr, true);
         for (const Finding& finding : judge(run, options).findings) {
           if (finding.severity != Severity::kFail || finding.place.file != 0) continue;
-          Report one;
-          one.findings = {finding};
+          Report one{.findings = {finding}};
           EXPECT_TRUE(alone.contains(*findings_of(one, nullptr, true).begin()))
               << air << " " << line << ": " << *findings_of(one, nullptr, true).begin();
         }

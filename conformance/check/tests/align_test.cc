@@ -95,8 +95,7 @@ TEST(Align, TheFindingsOfCapturesOfTheFirmwareStay) {
           SerialClock clock;
           clock.ahead_s = ahead_s;
           clock.drift_ppm = drift_ppm;
-          Options options;
-          options.sniffer_complete = options.start_cold = strict;
+          Options options{.sniffer_complete = strict, .start_cold = strict};
           const std::string what = std::string(name) + " " + std::to_string(ahead_s) + " s " +
                                    std::to_string(drift_ppm) + " ppm";
           aligned += expect_as_whole(what, take_apart(bytes, clock), options) ? 1 : 0;
@@ -112,9 +111,7 @@ TEST(Align, TheFindingsOfSimulatedNetworksStay) {
   std::size_t all = 0;
   for (const simulate::Scenario& scenario : simulate::scenarios()) {
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-      simulate::ScenarioOptions options;
-      options.seed = seed;
-      options.loss = 0.1 * static_cast<double>(seed % 2);
+      simulate::ScenarioOptions options{.seed = seed, .loss = 0.1 * static_cast<double>(seed % 2)};
       const std::string bytes = simulated(scenario, options);
       for (const double ahead_s : kAhead_s) {
         for (const double lost : {0.0, 0.2}) {
@@ -141,9 +138,7 @@ TEST(Align, TheFindingsOfSimulatedNetworksStay) {
 // Two sniffers of one air with their own clocks: their frames are judged once.
 TEST(Align, TwoSniffersOfOneAir) {
   SerialClock one;
-  SerialClock other;
-  other.base_s = one.base_s + 100.123;
-  other.lost = 0.2;
+  SerialClock other{.lost = 0.2, .base_s = one.base_s + 100.123};
   Apart apart = take_apart(capture("a_join_data"), one);
   const Apart second = take_apart(capture("a_join_data"), other);
   const check::Run whole = put_together(apart);
@@ -166,13 +161,11 @@ TEST(Align, TwoSniffersOfOneAir) {
 // The lines of two sinks, each on its own clock, given before the air.
 TEST(Align, EveryFileHasItsClock) {
   const std::string bytes = capture("c_two_islands");
-  SerialClock raw;
-  raw.stamps = false;
+  SerialClock raw{.stamps = false};
   const Apart by_line = take_apart(bytes, raw);
   ASSERT_EQ(by_line.parts.size(), 3U);
   SerialClock clock;
-  Apart apart;
-  apart.whole = take_apart(bytes, clock).whole;
+  Apart apart{.whole = take_apart(bytes, clock).whole};
   for (const std::size_t i : {1U, 2U, 0U}) {
     clock.base_s = 1e9 + 1000.0 * static_cast<double>(i);
     Part part = only_interface(take_apart(bytes, clock).whole, by_line.parts[i].name);
@@ -215,8 +208,7 @@ void expect_order(const std::string& name, const Apart& parts, const Options& op
   for (const std::string& one : fails) {
     EXPECT_TRUE(known.contains(one)) << name << ": " << one << "; " << fact;
   }
-  AlignOptions off;
-  off.enabled = false;
+  AlignOptions off{.enabled = false};
   const Report before = judge(put_together(parts, off), options);
   ++kept.runs;
   kept.aligned += run.loose.empty() ? 0 : 1;
@@ -240,11 +232,8 @@ TEST(Align, ALineWithoutStampsIsInOrderWithTheFirmwaresAir) {
   for (const char* name : kCaptures) {
     for (const bool strict : {false, true}) {
       for (const double begin_s : {0.0, 20.0}) {
-        SerialClock clock;
-        clock.stamps = false;
-        clock.begin_s = begin_s;
-        Options options;
-        options.sniffer_complete = options.start_cold = strict;
+        SerialClock clock{.stamps = false, .begin_s = begin_s};
+        Options options{.sniffer_complete = strict, .start_cold = strict};
         expect_order(name, take_apart(capture(name), clock), options, kept);
       }
     }
@@ -256,15 +245,10 @@ TEST(Align, ALineWithoutStampsIsInOrderWithASimulatedAir) {
   Kept kept;
   for (const simulate::Scenario& scenario : simulate::scenarios()) {
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-      simulate::ScenarioOptions options;
-      options.seed = seed;
-      options.loss = 0.1 * static_cast<double>(seed % 2);
+      simulate::ScenarioOptions options{.seed = seed, .loss = 0.1 * static_cast<double>(seed % 2)};
       const std::string bytes = simulated(scenario, options);
       for (const double lost : {0.0, 0.2}) {
-        SerialClock clock;
-        clock.stamps = false;
-        clock.lost = lost;
-        clock.seed = seed;
+        SerialClock clock{.stamps = false, .lost = lost, .seed = seed};
         Options strict;
         strict.sniffer_complete = strict.start_cold = lost == 0;
         expect_order(scenario.name, take_apart(bytes, clock), strict, kept);

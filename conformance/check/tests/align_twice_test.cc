@@ -100,8 +100,7 @@ void expect_one_air(const std::string& name, const SerialClock& clock) {
 }
 
 TEST(AlignTwice, TwoSniffersAndLinesWithoutStamps) {
-  SerialClock clock;
-  clock.stamps = false;
+  SerialClock clock{.stamps = false};
   std::size_t loose = 0;
   for (const char* name : kCaptures) {
     expect_one_air(name, clock);
@@ -111,16 +110,13 @@ TEST(AlignTwice, TwoSniffersAndLinesWithoutStamps) {
 }
 
 TEST(AlignTwice, TwoSniffersAndALineOnAnotherClock) {
-  SerialClock clock;
-  clock.ahead_s = -777;
-  clock.drift_ppm = 40;
+  SerialClock clock{.ahead_s = -777, .drift_ppm = 40};
   for (const char* name : kCaptures) expect_one_air(name, clock);
 }
 
 // One sniffer takes over from another one while that still listens.
 TEST(AlignTwice, ASnifferThatTakesOver) {
-  SerialClock clock;
-  clock.stamps = false;
+  SerialClock clock{.stamps = false};
   const Apart apart = take_apart(capture("a_join_data"), clock);
   const Outcome once = outcome_of(apart.parts);
   std::vector<Part> parts = apart.parts;
@@ -138,8 +134,7 @@ TEST(AlignTwice, ASnifferThatTakesOver) {
 // Each of two sniffers misses what the other one has: the line is in order with both together.
 TEST(AlignTwice, TwoSniffersThatBothMissFrames) {
   for (const char* name : kCaptures) {
-    SerialClock clock;
-    clock.stamps = false;
+    SerialClock clock{.stamps = false};
     const Apart apart = take_apart(capture(name), clock);
     const check::Run once = put_together(apart);
     for (const double shift_s : {0.0, 0.001, -0.001}) {
@@ -159,8 +154,7 @@ TEST(AlignTwice, TwoSniffersThatBothMissFrames) {
 
 // Only the line of one sink has no stamps; the other sink's line shows nothing of it.
 TEST(AlignTwice, ALineWithStampsBesideOneWithout) {
-  SerialClock raw;
-  raw.stamps = false;
+  SerialClock raw{.stamps = false};
   const std::string bytes = capture("c_two_islands");
   const Apart apart = take_apart(bytes, raw);
   ASSERT_EQ(apart.parts.size(), 3U);
@@ -176,8 +170,7 @@ TEST(AlignTwice, ALineWithStampsBesideOneWithout) {
 
 // A line without stamps that is given twice is ordered as it is alone.
 TEST(AlignTwice, OneLineTwice) {
-  SerialClock raw;
-  raw.stamps = false;
+  SerialClock raw{.stamps = false};
   for (const char* name : kCaptures) {
     std::vector<Part> parts = take_apart(capture(name), raw).parts;
     if (parts.size() != 2) continue;

@@ -20,8 +20,7 @@ constexpr auto kSetIsland = static_cast<std::uint8_t>(rubicon::CommandCode::kSet
 
 // Returns the rules of all but notes, each with the letter of its severity: "F:N9-SET I:J5-STOP".
 std::string found_in(const Script& script, bool complete = true) {
-  Options options;
-  options.sniffer_complete = options.start_cold = complete;
+  Options options{.sniffer_complete = complete, .start_cold = complete};
   std::string out;
   for (const Finding& finding : judge(script.run, options).findings) {
     if (finding.severity == Severity::kNote) continue;
@@ -33,18 +32,6 @@ std::string found_in(const Script& script, bool complete = true) {
   return out;
 }
 
-NetFields message(machine::Address src, machine::Address dest, std::uint16_t seq_num,
-                  std::uint8_t reliable = 0) {
-  NetFields net;
-  net.src = src;
-  net.dest = dest;
-  net.seq_num = seq_num;
-  net.reliable = reliable;
-  return net;
-}
-NetFields update(std::uint16_t mote, std::uint16_t seq_num) {
-  return message({11, mote}, {11, kNullDevid}, seq_num);
-}
 void forwards(Script& script, double ms, std::uint16_t mote, std::uint16_t seq_num) {
   script.net(ms, mote, 1, update(mote, seq_num)).up(ms + 12, update(mote, seq_num).forwarded());
 }

@@ -28,10 +28,7 @@ struct Flawed {
 };
 
 explore::Options network_of(const Flawed& flawed, const flaws::Flaw& flaw) {
-  explore::Options options;
-  options.profile = machine::kPaper;
-  options.motes = flawed.motes;
-  options.calls = 2;
+  explore::Options options{.profile = machine::kPaper, .motes = flawed.motes, .calls = 2};
   options.loss = options.dup = true;
   options.reorder = flawed.reorder;
   options.properties = explore::bit(flawed.property);
@@ -55,8 +52,7 @@ std::string text_of(const Report& report) {
 }
 
 Report judge_text(const std::string& text) {
-  Options options;
-  options.sniffer_complete = options.start_cold = true;
+  Options options{.sniffer_complete = true, .start_cold = true};
   options.ack_timeout_us = machine::us_of(machine::Profile{}.ack_timeout_ticks);  // That of all.
   return judge(must_read("counterexample.rtr", text), options);
 }

@@ -1,8 +1,9 @@
-// The failures of a report as text, for tests to compare.
+// The findings of a report as text, for tests to compare.
 #pragma once
 
 #include <set>
 #include <string>
+#include <vector>
 
 #include "codec/reflect/requirements.h"
 #include "conformance/check/observation.h"
@@ -19,6 +20,20 @@ inline std::multiset<std::string> failures_of(const Report& report) {
   }
   return out;
 }
+
+/// Returns the rules of findings of at least that severity, in order.
+inline std::string rules_of(const std::vector<Finding>& findings,
+                            Severity least = Severity::kNote) {
+  std::string out;
+  for (const Finding& finding : findings) {
+    if (finding.severity < least) continue;
+    out += std::string(out.empty() ? "" : " ") + reflect::requirement(finding.requirement).id;
+  }
+  return out;
+}
+
+/// Returns the options of a recording that is complete, from the start on.
+inline Options complete() { return {.sniffer_complete = true, .start_cold = true}; }
 
 /// Returns the rules that a report finds broken, in order; of a SHOULD it says so. Tests have short
 /// messages on their serial lines, so that they can be read: that alone is not said.

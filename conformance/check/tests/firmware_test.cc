@@ -12,6 +12,7 @@
 #include "codec/reflect/requirements.h"
 #include "conformance/check/input/read.h"
 #include "conformance/check/observation.h"
+#include "conformance/check/report/words.h"
 #include "conformance/check/tests/must_read.h"
 
 namespace rubric::check {
@@ -32,24 +33,13 @@ constexpr const char* kCaptures[] = {"a2_join_data_sensible_start",
                                      "h4_stale_bytes"};
 constexpr const char* kList = "conformance/check/tests/testdata/firmware_findings.tsv";
 
-const char* text_of(Severity severity) {
-  switch (severity) {
-    case Severity::kNote: return "note";
-    case Severity::kWeak: return "weak";
-    case Severity::kStray: return "stray";
-    case Severity::kInconclusive: return "inconclusive";
-    case Severity::kFail: break;
-  }
-  return "fail";
-}
-
 // "capture profile inputs file:frame rule severity count node", tabs between.
 std::string line_of(const std::string& run, const Finding& finding) {
   std::ostringstream out;
   const char* const id = reflect::requirement(finding.requirement).id;
   out << run << '\t' << finding.place.file << ':' << finding.place.frame << '\t'
-      << (*id == '\0' ? "-" : id) << '\t' << text_of(finding.severity) << '\t' << finding.count
-      << '\t' << (finding.node.empty() ? "-" : finding.node);
+      << (*id == '\0' ? "-" : id) << '\t' << report::severity_name(finding.severity) << '\t'
+      << finding.count << '\t' << (finding.node.empty() ? "-" : finding.node);
   return out.str();
 }
 

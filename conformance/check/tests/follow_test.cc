@@ -172,8 +172,7 @@ TEST(Follow, SimulatedRuns) {
                                         2 + seed % 4, 1 + seed % 2};
     const std::string capture = simulated(how, 120 * kSecondUs);
     for (const bool complete : {false, true}) {
-      Options options;
-      options.sniffer_complete = options.start_cold = complete;
+      Options options{.sniffer_complete = complete, .start_cold = complete};
       const std::string what = "free " + std::to_string(seed) + (complete ? " complete" : "");
       compare(what, capture, 0, seed, options, 10 * kSecondUs, honest);
       compare(what + " spoilt", capture, 0.02, seed, options, 10 * kSecondUs, spoilt);
@@ -211,18 +210,15 @@ class Live final : public simulate::Recorder {
   explicit Live(Follow& follow) : follow_(follow) {}
 
   void on_air(simulate::Micros time_us, std::size_t, Bytes frame) override {
-    Packet packet;
-    packet.framing = Framing::kRadio;
-    packet.bytes = frame;
+    Packet packet{.framing = Framing::kRadio, .bytes = frame};
     take(time_us, packet, "radio", 0);
   }
   void on_serial(simulate::Micros time_us, std::size_t line, bool to_sink,
                  const simulate::SerialFrame& frame) override {
-    Packet packet;
-    packet.framing = Framing::kHdlc;
-    packet.direction = to_sink ? Direction::kInbound : Direction::kOutbound;
-    packet.kind = frame.kind;
-    packet.serial_seq = frame.seq;
+    Packet packet{.framing = Framing::kHdlc,
+                  .direction = to_sink ? Direction::kInbound : Direction::kOutbound,
+                  .kind = frame.kind,
+                  .serial_seq = frame.seq};
     packet.bytes = frame.packet;
     take(time_us, packet, line == 0 ? "serial:1" : "serial:101", 1 + line);
   }

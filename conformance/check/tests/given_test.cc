@@ -13,11 +13,7 @@ namespace {
 
 using machine::Role;
 
-Options with(std::vector<KnownNode> nodes) {
-  Options options;
-  options.nodes = std::move(nodes);
-  return options;
-}
+Options with(std::vector<KnownNode> nodes) { return {.nodes = std::move(nodes)}; }
 
 check::Run capture(const std::string& name) {
   return must_read({"spec/captures/firmware/" + name + ".pcapng"});
@@ -38,15 +34,6 @@ std::vector<Finding> doubts(const Report& report) {
   return out;
 }
 
-NetFields data(machine::Address src, machine::Address dest, std::uint16_t seq_num) {
-  static const NetFields kPlain;
-  NetFields net = kPlain;
-  net.src = src;
-  net.dest = dest;
-  net.seq_num = seq_num;
-  return net;
-}
-
 TEST(Given, ANamedSinkIsNoUnknownSender) {
   const check::Run run = capture("g2_stray_reply_while_joining");
   EXPECT_EQ(names_of(run, {}),
@@ -63,9 +50,9 @@ TEST(Given, ANamedSinkIsNoUnknownSender) {
 
 TEST(Given, ANamedMotesLostFramesMakeNoStrangers) {
   Script script;
-  script.join(0, 11, 2, 100).net(200, 2, 1, data({11, 2}, {11, machine::kNullDevid}, 1));
+  script.join(0, 11, 2, 100).net(200, 2, 1, message({11, 2}, {11, machine::kNullDevid}, 1));
   script.dsn[2] = 200;  // Many frames were not heard.
-  script.net(9000, 2, 1, data({11, 2}, {11, machine::kNullDevid}, 2));
+  script.net(9000, 2, 1, message({11, 2}, {11, machine::kNullDevid}, 2));
   const auto unknown = std::string("unknown sender with address 2");
   const auto before = names_of(script.run, {});
   EXPECT_NE(std::find(before.begin(), before.end(), unknown), before.end());
@@ -79,7 +66,7 @@ TEST(Given, AnIslandWinsOverAGuess) {
   Script script;
   for (int i = 0; i < 4; ++i) {
     const auto seq_num = static_cast<std::uint16_t>(10 + i);
-    script.net(100 * i, 1, 3, data({12, machine::kNullDevid}, {12, 3}, seq_num), 11);
+    script.net(100 * i, 1, 3, message({12, machine::kNullDevid}, {12, 3}, seq_num), 11);
   }
   EXPECT_EQ(names_of(script.run, {})[0], "sink of island 12");
   EXPECT_EQ(names_of(script.run, with({{1, Role::kSink, 11}}))[0], "sink of island 11");
@@ -88,7 +75,7 @@ TEST(Given, AnIslandWinsOverAGuess) {
 TEST(Given, ALineWithoutASignOfItsIslandIsTheGivenSinks) {
   Script script;
   script.run.taps.pop_back();
-  script.down(100, data({12, 3}, {11, 2}, 5));
+  script.down(100, message({12, 3}, {11, 2}, 5));
   EXPECT_TRUE(names_of(script.run, {}).empty());
   EXPECT_EQ(names_of(script.run, with({{1, Role::kSink, 11}})),
             (std::vector<std::string>{"sink of island 11", "base station of island 11"}));
@@ -123,7 +110,7 @@ TEST(Given, ASinkThatIsRenamedHadItsGivenIslandBefore) {
   Script script;
   constexpr auto kSetIsland = static_cast<std::uint8_t>(rubicon::CommandCode::kSetIslandId);
   const auto rename = [&](double ms) { script.serial(ms, true, am::kConfig, {kSetIsland, 0, 12}); };
-  script.net(0, 1, 3, data({11, machine::kNullDevid}, {11, 3}, 5), 11);
+  script.net(0, 1, 3, message({11, machine::kNullDevid}, {11, 3}, 5), 11);
   rename(50);
   script.reply(100, 12, 4, 7, 100);
   script.run.taps.pop_back();

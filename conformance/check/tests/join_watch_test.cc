@@ -102,9 +102,7 @@ TEST(JoinWatch, TheClockIsSet) {
 
 // Captures, in which the link's acknowledgement is the proof.
 std::string seen(const Script& script, bool complete) {
-  Options options;
-  options.start_cold = true;
-  options.sniffer_complete = complete;
+  Options options{.sniffer_complete = complete, .start_cold = true};
   std::string out;
   for (const Finding& finding : judge(script.run, options).findings) {
     const char* const id = reflect::requirement(finding.requirement).id;

@@ -18,20 +18,8 @@ namespace {
 using machine::Address;
 using machine::kNullDevid;
 
-NetFields update(std::uint16_t mote, std::uint16_t seq_num) {
-  NetFields net;
-  net.dest = {11, kNullDevid};
-  net.src = {11, mote};
-  net.seq_num = seq_num;
-  return net;
-}
 NetFields reliable(Address src, Address dest, std::uint16_t seq_num) {
-  NetFields net;
-  net.src = src;
-  net.dest = dest;
-  net.reliable = 1;
-  net.seq_num = seq_num;
-  return net;
+  return message(src, dest, seq_num, 1);
 }
 
 // Two motes join at 0 and 100 ms; both have sent something by 300 ms.
@@ -50,23 +38,6 @@ void end_well(Script& script, double ms) {
   script.net(ms + 110, 1, 2, reliable({11, kNullDevid}, {11, 2}, 903), 11);
   script.net(ms + 130, 2, 1, reliable({11, kNullDevid}, {11, 2}, 903).ack(904));
   script.up(ms + 150, reliable({11, kNullDevid}, {11, 2}, 903).ack(904).forwarded());
-}
-
-Options strict() {
-  Options options;
-  options.sniffer_complete = true;
-  options.start_cold = true;
-  return options;
-}
-
-std::string text_of(const Report& report, Severity least) {
-  std::string out;
-  for (const Finding& finding : report.findings) {
-    if (finding.severity < least) continue;
-    if (!out.empty()) out += " ";
-    out += reflect::requirement(finding.requirement).id;
-  }
-  return out;
 }
 
 struct Fault {
@@ -361,7 +332,7 @@ TEST_P(Faults, AreFoundByTheirRule) {
   Script script = two_motes();
   GetParam().make(script);
   end_well(script, 4000);
-  const Report report = judge(script.run, strict());
+  const Report report = judge(script.run, complete());
   std::string all;
   for (const Finding& finding : report.findings) all += finding.text + "\n";
   EXPECT_EQ(broken_in(report), GetParam().found) << all;
@@ -383,7 +354,7 @@ INSTANTIATE_TEST_SUITE_P(All, Faults, testing::ValuesIn(kFaults),
                          [](const auto& given) { return std::string(given.param.name); });
 
 TEST(Judge, NothingHasNothingWrong) {
-  const Report report = judge(check::Run{}, strict());
+  const Report report = judge(check::Run{}, complete());
   EXPECT_EQ(report.verdict, Verdict::kPass);
   EXPECT_EQ(report.frames, 0U);
 }
@@ -392,7 +363,7 @@ TEST(Judge, NothingHasNothingWrong) {
 TEST(Judge, TheSixthRequestOfASlowTimerIsOneTooMany) {
   Script script;
   for (int i = 0; i < 6; ++i) script.request(1000 * i, 4, 300);
-  EXPECT_EQ(broken_in(judge(script.run, strict())), "J8-LIMIT");
+  EXPECT_EQ(broken_in(judge(script.run, complete())), "J8-LIMIT");
 }
 
 TEST(Judge, TestersAreNotJudged) {
@@ -400,17 +371,17 @@ TEST(Judge, TestersAreNotJudged) {
   NetFields net = update(66, 5);
   net.nbytes = 90;
   script.net(420, 66, 1, net);
-  Options options = strict();
+  Options options = complete();
   EXPECT_EQ(judge(script.run, options).verdict, Verdict::kFail);
   options.testers = {66};
-  EXPECT_EQ(text_of(judge(script.run, options), Severity::kWeak), "");
+  EXPECT_EQ(rules_of(judge(script.run, options).findings, Severity::kWeak), "");
 }
 
 TEST(Judge, EpisodesAreOneFinding) {
   Script script = two_motes();
   for (int i = 0; i < 5; ++i) script.joined(400 + 100 * i, 11, 2);
-  const Report report = judge(script.run, strict());
-  ASSERT_EQ(text_of(report, Severity::kFail), "J6-REPEAT");
+  const Report report = judge(script.run, complete());
+  ASSERT_EQ(rules_of(report.findings, Severity::kFail), "J6-REPEAT");
   EXPECT_EQ(report.findings.back().count, 5U);
   EXPECT_EQ(report.findings.back().last.time_us, 800'000);
 }
@@ -418,10 +389,10 @@ TEST(Judge, EpisodesAreOneFinding) {
 TEST(Judge, AStandingClockPassesWhenDeployed) {
   Script script = two_motes();
   script.request(1400, 4, 300).reply(1410, 11, 4, 300, 110);
-  Options options = strict();
+  Options options = complete();
   options.deployed = true;
   const Report report = judge(script.run, options);
-  EXPECT_EQ(text_of(report, Severity::kNote), "N6-CONTENT J3-TIME");
+  EXPECT_EQ(rules_of(report.findings, Severity::kNote), "N6-CONTENT J3-TIME");
   EXPECT_EQ(report.verdict, Verdict::kPass);
 }
 
@@ -476,9 +447,7 @@ TEST(Judge, SaysWhoIsNotFollowed) {
 TEST(Judge, LesserFindingsKeepNoFailureOut) {
   const std::vector<ClockStep> steady;
   Findings findings(false, steady);
-  Finding finding;
-  finding.requirement = "J1-DEST"_rule;
-  finding.severity = Severity::kWeak;
+  Finding finding{.requirement = "J1-DEST"_rule, .severity = Severity::kWeak};
   for (std::size_t i = 0; i < Listed::kMost + 7; ++i) {
     finding.place.time_us += Findings::kEpisodeUs + 1;
     findings.add(finding);

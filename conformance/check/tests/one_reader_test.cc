@@ -30,6 +30,7 @@
 #include "conformance/check/message.h"
 #include "conformance/check/observation.h"
 #include "conformance/check/storage.h"
+#include "conformance/check/tests/failures.h"
 #include "conformance/machine/transport.h"
 
 namespace rubric::check {
@@ -62,8 +63,7 @@ class Comparer {
 
   /// All packets that the bytes hold in that format.
   void bytes(const std::string& bytes, InputFormat format, Framing hex) {
-    ReaderOptions options;
-    options.hex_framing = hex;
+    ReaderOptions options{.hex_framing = hex};
     const std::unique_ptr<Reader> reader = make_reader(format, options);
     ASSERT_TRUE(reader);
     auto take = [&](const Packet& packet) { this->packet(packet); };
@@ -364,8 +364,7 @@ TEST(OneReader, OfEveryCorpusFile) {
     for (const Framing hex : {Framing::kSf, Framing::kRadio, Framing::kHdlc, Framing::kBare}) {
       all.bytes(bytes, InputFormat::kHex, hex);
     }
-    Packet packet;
-    packet.bytes = testing::view(bytes);
+    Packet packet{.bytes = testing::view(bytes)};
     for (const Framing framing : {Framing::kSf, Framing::kRadio}) {
       packet.framing = framing;
       all.packet(packet);
@@ -441,18 +440,15 @@ TEST(OneReader, ASecuredFrameIsOpaque) {
   EXPECT_EQ(all.count("opaque"), 1);
   RunReader reader;
   const std::uint32_t file = reader.open("air");
-  ReaderOptions as;
-  as.hex_framing = Framing::kRadio;
+  ReaderOptions as{.hex_framing = Framing::kRadio};
   auto take = [&](const Packet& packet) { reader.take(file, packet, {}); };
   const std::string_view air = kAir;
   make_reader(InputFormat::kHex, as)
       ->feed(Bytes(reinterpret_cast<const std::uint8_t*>(air.data()), air.size()), take);
   const check::Run run = reader.finish();
   EXPECT_EQ(run.seen.size(), 1U);
-  Options options;
-  options.sniffer_complete = options.start_cold = true;
   // Nothing is known of the request's reply, and nothing more is said.
-  const Report report = judge(run, options);
+  const Report report = judge(run, complete());
   EXPECT_EQ(report.verdict, Verdict::kInconclusive);
   ASSERT_EQ(report.findings.size(), 1U);
   EXPECT_EQ(report.findings[0].requirement, "J3-REPLY"_rule);

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "codec/reflect/requirements.h"
 #include "conformance/check/observation.h"
+#include "conformance/check/tests/failures.h"
 #include "conformance/check/tests/testing.h"
 
 namespace rubric::check::passive_test {
@@ -24,29 +24,11 @@ std::vector<Finding> findings_of(const Script& script, Severity severity,
   return out;
 }
 
-std::string rules_of(const std::vector<Finding>& findings) {
-  std::string out;
-  for (const Finding& finding : findings) {
-    out += std::string(out.empty() ? "" : " ") + reflect::requirement(finding.requirement).id;
-  }
-  return out;
-}
-
 std::string failures_of(const Script& script, const Options& options = {}) {
   return rules_of(findings_of(script, Severity::kFail, options));
 }
 
-NetFields message(machine::Address src, machine::Address dest, std::uint16_t seq_num) {
-  NetFields net;
-  net.src = src;
-  net.dest = dest;
-  net.seq_num = seq_num;
-  return net;
-}
 NetFields to_mote(std::uint16_t seq_num) { return message({11, kNullDevid}, {11, 2}, seq_num); }
-NetFields update(std::uint16_t mote, std::uint16_t seq_num) {
-  return message({11, mote}, {11, kNullDevid}, seq_num);
-}
 
 // J6-REPORT: mote 2 is confirmed at 20 ms; mote 3 joins at 1000 ms and is reported.
 Script two_joins(const std::function<void(Script&)>& report_of_2, bool confirmed = true) {

@@ -150,8 +150,7 @@ case log
    @200000 m2 > rA am=2->1 join_request(seq_num=5 mote_type=1 transducers=1 actuators=1)
 )";
   const check::Run run = must_read("log", kLog);
-  Options options;
-  options.start_cold = true;
+  Options options{.start_cold = true};
   const Report report = judge(run, options);
   bool early = false;
   for (const Finding& finding : report.findings) {
@@ -175,10 +174,8 @@ class SerialCapture {
     for (const int byte : payload) bytes.push_back(static_cast<std::uint8_t>(byte));
     bytes[5] = static_cast<std::uint8_t>(payload.size());
     if (kind == kSerialAck) bytes.clear();
-    Packet packet;
-    packet.framing = Framing::kHdlc;
-    packet.bytes = Bytes(bytes.data(), bytes.size());
-    packet.kind = kind;
+    Packet packet{
+        .framing = Framing::kHdlc, .bytes = Bytes(bytes.data(), bytes.size()), .kind = kind};
     if (serial_kind_has_seq(kind)) packet.serial_seq = 7;
     packet.time_ns = 1'000'000 * ++count_;
     if (flags_of_mote_) {

@@ -15,12 +15,6 @@
 namespace rubric::check {
 namespace {
 
-Options complete() {
-  Options options;
-  options.sniffer_complete = options.start_cold = true;
-  return options;
-}
-
 Run read_both(const Recorded& from, bool stamps = true) {
   const auto stamped = [stamps](Packet& packet) {
     if (!stamps) packet.time_ns = kNoTime;
@@ -188,15 +182,13 @@ TEST(AlignLogs, NobodyIsBlamedForAClockThatSteps) {
 TEST(AlignLogs, NobodyIsBlamedForStampsThatScatterOrAreRounded) {
   for (const char* scenario : {"timeline", "home", "open_door", "inter_island", "two_sinks"}) {
     const Recorded run = recorded(scenario);
-    Options options;
-    options.sniffer_complete = options.start_cold = true;
     for (const std::int64_t most_us : {1000, 3000, 10'000, 20'000}) {
       std::minstd_rand random(1);
       const auto late = [&](Packet& packet) {
         packet.time_ns += static_cast<std::int64_t>(random()) % most_us * 1000;
         return 0;
       };
-      EXPECT_EQ(broken_in(judge(read_apart(run.capture, 1, late, {run.log}), options)), "")
+      EXPECT_EQ(broken_in(judge(read_apart(run.capture, 1, late, {run.log}), complete())), "")
           << scenario << " " << most_us;
     }
     for (const int ticks : {10, 20}) {
@@ -213,8 +205,7 @@ TEST(AlignLogs, NobodyIsBlamedForALineThatIsNotRecorded) {
     const Recorded all = all_of(scenario);
     const auto air = [](Packet& packet) { return packet.framing == Framing::kRadio ? 0 : -1; };
     for (const bool complete : {false, true}) {
-      Options options;
-      options.sniffer_complete = options.start_cold = complete;
+      Options options{.sniffer_complete = complete, .start_cold = complete};
       const check::Run applications = read_apart(all.capture, 1, air, {recorded(scenario).log});
       EXPECT_EQ(broken_in(judge(applications, options)), "") << scenario << " " << complete;
       // Both ends of a line may have kept a log of it.

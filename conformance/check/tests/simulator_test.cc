@@ -10,6 +10,7 @@
 #include "codec/reflect/requirements.h"
 #include "conformance/check/judge/watch.h"
 #include "conformance/check/observation.h"
+#include "conformance/check/tests/failures.h"
 #include "conformance/check/tests/frames_testing.h"
 #include "conformance/check/tests/must_read.h"
 #include "conformance/simulate/recorder.h"
@@ -33,9 +34,7 @@ struct Count {
 };
 
 void expect_no_fail(const std::string& name, const Run& run, Count& count) {
-  Options options;
-  options.sniffer_complete = options.start_cold = true;
-  const Report report = judge(run, options);
+  const Report report = judge(run, complete());
   EXPECT_GT(report.frames, 0U) << name;
   ++count.judgements;
   for (const Finding& finding : report.findings) {
@@ -79,8 +78,7 @@ struct Told {
 void grow(const std::string& name, const Run& whole, Told& told) {
   constexpr std::int64_t kEveryUs = 500'000;
   constexpr std::int64_t kSettleUs = 1'400'000;
-  Options options;
-  options.sniffer_complete = options.start_cold = true;
+  const Options options = complete();
   Watch watch(kSettleUs);
   Run run = whole;
   run.seen.clear();

@@ -3,42 +3,31 @@
 
 #include "conformance/check/judge/sizes.h"
 #include "conformance/check/observation.h"
+#include "conformance/check/tests/failures.h"
 #include "conformance/check/tests/testing.h"
 
 namespace rubric::check {
 namespace {
-
-NetFields update(std::uint16_t seq_num) {
-  NetFields net;
-  net.dest = {11, machine::kNullDevid};
-  net.src = {11, 2};
-  net.seq_num = seq_num;
-  return net;
-}
 
 NetFields whole(NetFields net) {
   net.size = machine::kAmPayloadMax;
   return net;
 }
 
-Report report_of(const Script& script) {
-  Options options;
-  options.sniffer_complete = options.start_cold = true;
-  return judge(script.run, options);
-}
+Report report_of(const Script& script) { return judge(script.run, complete()); }
 
 TEST(Stale, ExactMessagesHaveNoNote) {
   Script script;
   script.join(0, 11, 2, 100);
-  script.net(200, 2, 1, update(1)).up(215, whole(update(1)));
+  script.net(200, 2, 1, update(2, 1)).up(215, whole(update(2, 1)));
   EXPECT_TRUE(report_of(script).findings.empty());
 }
 
 TEST(Stale, WhatIsCutShortOnASerialLineIsWeakOnceASender) {
   Script script;
   script.join(0, 11, 2, 100);
-  script.net(200, 2, 1, update(1)).up(215, update(1));
-  script.net(2000, 2, 1, update(2)).up(2015, update(2));
+  script.net(200, 2, 1, update(2, 1)).up(215, update(2, 1));
+  script.net(2000, 2, 1, update(2, 2)).up(2015, update(2, 2));
   const Report report = report_of(script);
   ASSERT_EQ(report.findings.size(), 1U);
   EXPECT_EQ(report.findings[0].requirement, "N11-WHOLE"_rule);
@@ -49,9 +38,9 @@ TEST(Stale, WhatIsCutShortOnASerialLineIsWeakOnceASender) {
 TEST(Stale, SerialLinesAreNotedOnce) {
   Script script;
   script.join(0, 11, 2, 100);
-  script.net(200, 2, 1, update(1)).up(215, update(1).forwarded());
+  script.net(200, 2, 1, update(2, 1)).up(215, update(2, 1).forwarded());
   const std::uint64_t first = script.run.seen.back().place.frame;
-  script.net(2000, 2, 1, update(2)).up(2015, update(2).forwarded());
+  script.net(2000, 2, 1, update(2, 2)).up(2015, update(2, 2).forwarded());
   const std::uint64_t last = script.run.seen.back().place.frame;
   const Report report = report_of(script);
   ASSERT_EQ(report.findings.size(), 1U);
@@ -67,9 +56,9 @@ TEST(Stale, SerialLinesAreNotedOnce) {
 TEST(Stale, FramesOnTheAirAreNotedOnce) {
   Script script;
   script.join(0, 11, 2, 100);
-  NetFields net = update(1);
+  NetFields net = update(2, 1);
   net.size = 40;
-  script.net(200, 2, 1, net).up(215, whole(update(1)));
+  script.net(200, 2, 1, net).up(215, whole(update(2, 1)));
   const Report report = report_of(script);
   ASSERT_EQ(report.findings.size(), 1U);
   EXPECT_EQ(report.findings[0].requirement, "WIRE-NET-PAYLOAD"_rule);

@@ -29,16 +29,13 @@ std::size_t failures_of(const Report& report, ReqId rule) {
 Report unreported(double later_ms, const Options& options) {
   Script script;
   script.request(0, 2, 100).reply(10, 11, 2, 100, 10).ack_join(20, 11, 2, 100).link_ack();
-  NetFields net;
-  net.dest = {11, machine::kNullDevid};
-  net.src = {11, 1};
+  NetFields net{.dest = {11, machine::kNullDevid}, .src = {11, 1}};
   script.up(20 + later_ms, net);
   return judge(script.run, options);
 }
 
 TEST(Stated, TheResponseTimeIsTheProfilesUnlessStated) {
-  Options options;
-  options.sniffer_complete = options.start_cold = true;
+  Options options{.sniffer_complete = true, .start_cold = true};
   EXPECT_EQ(failures_of(unreported(299 * kTickMs, options), "J6-REPORT"_rule), 0U);
   EXPECT_EQ(failures_of(unreported(302 * kTickMs, options), "J6-REPORT"_rule), 1U);
   options.response_us = 300'000;
@@ -53,23 +50,15 @@ TEST(Stated, TheResponseTimeIsTheProfilesUnlessStated) {
 Report unacked(double later_ms, const Options& options, bool ack = false) {
   Script script;
   script.join(0, 11, 2, 100);
-  NetFields net;
-  net.dest = {11, 1};
-  net.src = {11, 2};
-  net.reliable = 1;
-  net.seq_num = 5;
+  NetFields net{.dest = {11, 1}, .src = {11, 2}, .reliable = 1, .seq_num = 5};
   script.radio(1000, 2, 1, am::kNet, net.bytes(), 0, true).link_ack();
-  NetFields other;
-  other.dest = {11, 2};
-  other.src = {11, 1};
-  other.seq_num = 900;
+  NetFields other{.dest = {11, 2}, .src = {11, 1}, .seq_num = 900};
   script.net(1000 + later_ms, 1, 2, ack ? net.ack(900) : other, 11);
   return judge(script.run, options);
 }
 
 TEST(Stated, AResponseCountsFromTheEndOfItsCause) {
-  Options options;
-  options.sniffer_complete = options.start_cold = true;
+  Options options{.sniffer_complete = true, .start_cold = true};
   options.response_us = 300'000;
   constexpr double kAirMs = 35 * 0.032;  // 16 bytes, and 19 around them.
   EXPECT_EQ(failures_of(unacked(300 + kAirMs - 0.01, options), "T2-ACK"_rule), 0U);
@@ -77,8 +66,7 @@ TEST(Stated, AResponseCountsFromTheEndOfItsCause) {
 }
 
 TEST(Stated, AnAckThatComesLateIsNotMissing) {
-  Options options;
-  options.sniffer_complete = options.start_cold = true;
+  Options options{.sniffer_complete = true, .start_cold = true};
   EXPECT_EQ(failures_of(unacked(320, options), "T2-ACK"_rule), 1U);
   EXPECT_EQ(failures_of(unacked(320, options, true), "T2-ACK"_rule), 0U);
 }
@@ -87,23 +75,12 @@ TEST(Stated, AnAckThatComesLateIsNotMissing) {
 // message.
 Report told_early(double after_ms, const Options& options, const trace::Statement& own = {}) {
   Script script;
-  LoggedNode node;
-  node.name = "m2";
-  node.id = 2;
-  node.application = true;
-  node.stated = own;
+  LoggedNode node{.name = "m2", .id = 2, .stated = own, .application = true};
   script.run.nodes = {node};
-  NetFields net;
-  net.dest = {11, 3};
-  net.src = {11, 2};
-  net.reliable = 1;
-  net.seq_num = 5;
+  NetFields net{.dest = {11, 3}, .src = {11, 2}, .reliable = 1, .seq_num = 5};
   script.net(1000, 2, 3, net);
   script.run.seen.back().node = "m2";
-  machine::AckReceived told;
-  told.app_id = net.app_id;
-  told.seq_num = 5;
-  told.success = false;
+  machine::AckReceived told{.app_id = net.app_id, .seq_num = 5, .success = false};
   Observation seen = script.run.seen.back();
   seen.kind = Observation::Kind::kNotice;
   seen.notice = &script.run.storage->notices.emplace_back(told);
@@ -138,8 +115,7 @@ TEST(Stated, WhatTheUserSaysOfAllComesBeforeWhatANodeStates) {
   const trace::Statement own = {{trace::ParameterId::kAckTimeout, 2048}};
   EXPECT_EQ(timeout(told_early(1500, {}, own)), "Not before the timeout, 2000.00 ms.");
   EXPECT_EQ(timeout(told_early(2000, {}, own)), "");
-  Options users;
-  users.stated = {{trace::ParameterId::kAckTimeout, 1024}};
+  Options users{.stated = {{trace::ParameterId::kAckTimeout, 1024}}};
   EXPECT_EQ(timeout(told_early(500, users, own)), "Not before the timeout, 1000.00 ms.");
   users.ack_timeout_us = 3'000'000;
   EXPECT_EQ(timeout(told_early(2500, users, own)), "Not before the timeout, 3000.00 ms.");
@@ -177,8 +153,7 @@ TEST(Stated, ALogStatesNothingOfTheNodesOfACaptureBesideIt) {
   EXPECT_EQ(too_early("", "join_period=1024"), "mote 3");
   EXPECT_EQ(too_early("join_period=1024", ""), "");
   EXPECT_EQ(too_early("join_period=1024", "join_period=400"), "");
-  Options users;
-  users.stated = {{trace::ParameterId::kJoinPeriod, 1024}};
+  Options users{.stated = {{trace::ParameterId::kJoinPeriod, 1024}}};
   EXPECT_EQ(too_early("join_period=400", "", users), "mote 3");
   EXPECT_EQ(too_early("", "join_period=400", users), "mote 3");
 }

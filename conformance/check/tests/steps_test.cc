@@ -19,12 +19,6 @@ namespace {
 
 using ::testing::HasSubstr;
 
-Options strict() {
-  Options options;
-  options.sniffer_complete = options.start_cold = true;
-  return options;
-}
-
 // Moves the stamps from `ms` on, as a recorder would; frames keep their order.
 check::Run stepped_at(Script script, double ms, double by_ms, std::size_t count = SIZE_MAX) {
   for (Observation& seen : script.run.seen) {
@@ -41,10 +35,9 @@ check::Run stepped_at(Script script, double ms, double by_ms, std::size_t count 
 // Mote 2 sends a message each 400 ms, with the numbers `first` to `last`.
 void send(Script& script, int first, int last) {
   for (int i = first; i <= last; ++i) {
-    NetFields up;
-    up.dest = {11, machine::kNullDevid};
-    up.src = {11, 2};
-    up.seq_num = static_cast<std::uint16_t>(i);
+    NetFields up{.dest = {11, machine::kNullDevid},
+                 .src = {11, 2},
+                 .seq_num = static_cast<std::uint16_t>(i)};
     script.net(400 * i, 2, 1, up).up(400 * i + 15, up.forwarded());
   }
 }
@@ -65,7 +58,7 @@ TEST(Steps, AreFoundAndSaid) {
   EXPECT_FALSE(run.steps[0].alone());
   ASSERT_EQ(run.facts.size(), 1U);
   EXPECT_THAT(run.facts[0], HasSubstr("the clock of script steps back by 99.615 s at frame"));
-  EXPECT_TRUE(failures_of(judge(run, strict())).empty());
+  EXPECT_TRUE(failures_of(judge(run, complete())).empty());
   EXPECT_TRUE(
       stepped_at(busy(), 3000, -5).steps.empty());  // Less than the time to the frame before.
 }
@@ -77,7 +70,7 @@ TEST(Steps, OneWrongStampIsNoStep) {
     EXPECT_TRUE(run.steps[0].alone());
     ASSERT_EQ(run.facts.size(), 1U);
     EXPECT_THAT(run.facts[0], HasSubstr("is wrong by about"));
-    EXPECT_TRUE(failures_of(judge(run, strict())).empty());
+    EXPECT_TRUE(failures_of(judge(run, complete())).empty());
     const std::int64_t at_us = run.steps[0].time_us;
     EXPECT_GE(at_us, 2'800'000);
     EXPECT_LE(at_us, 3'600'000);
@@ -86,9 +79,7 @@ TEST(Steps, OneWrongStampIsNoStep) {
 
 TEST(Steps, TurnedFramesOfOneTapKeepTheOrderOfTheFile) {
   Script script = busy();
-  NetFields more;
-  more.dest = {11, machine::kNullDevid};
-  more.src = {11, 1};
+  NetFields more{.dest = {11, machine::kNullDevid}, .src = {11, 1}};
   script.up(7620, more);
   script.run.seen.back().place.time_us -= 8'000;  // Before the one before it.
   const std::uint64_t last = script.run.seen.back().place.frame;
@@ -112,7 +103,7 @@ TEST(Steps, ALinkAckThatComesMuchLaterShowsOneForth) {
     const check::Run run = stepped_at(later, ms, 400);
     ASSERT_EQ(run.steps.size(), 1U);
     EXPECT_THAT(run.facts[0], HasSubstr("forth"));
-    EXPECT_TRUE(failures_of(judge(run, strict())).empty());
+    EXPECT_TRUE(failures_of(judge(run, complete())).empty());
   }
 }
 
@@ -125,7 +116,7 @@ TEST(Steps, ALateAckJoinBetweenOrdinarySilencesShowsNone) {
   send(script, 4, 19);
   const check::Run run = stepped_at(script, 0, 0);
   EXPECT_TRUE(run.steps.empty());
-  ASSERT_EQ(failures_of(judge(run, strict())).size(), 1U);
+  ASSERT_EQ(failures_of(judge(run, complete())).size(), 1U);
 }
 
 // A request that comes too early: blamed before the step and after it, but not across it.
@@ -137,14 +128,15 @@ TEST(Steps, OnlyWhatSpansThemIsInconclusive) {
               [](const Observation& a, const Observation& b) {
                 return a.place.time_us < b.place.time_us;
               });
-    const std::multiset<std::string> whole = failures_of(judge(stepped_at(script, 0, 0), strict()));
+    const std::multiset<std::string> whole =
+        failures_of(judge(stepped_at(script, 0, 0), complete()));
     ASSERT_EQ(whole.size(), 1U);
     for (const double by_ms : {-100'000.0, -700.0}) {
-      EXPECT_EQ(failures_of(judge(stepped_at(script, 3000, by_ms), strict())), whole) << by_ms;
+      EXPECT_EQ(failures_of(judge(stepped_at(script, 3000, by_ms), complete())), whole) << by_ms;
       const check::Run across = stepped_at(script, at_ms + 50, by_ms);
       ASSERT_FALSE(across.steps.empty());
-      EXPECT_TRUE(failures_of(judge(across, strict())).empty());
-      const Report report = judge(across, strict());
+      EXPECT_TRUE(failures_of(judge(across, complete())).empty());
+      const Report report = judge(across, complete());
       EXPECT_EQ(report.verdict, Verdict::kInconclusive);
     }
   }
@@ -178,7 +170,7 @@ TEST(Steps, ARealFaultInAStretchWithoutOneIsFound) {
     while (victim + 1 < traffic.packets.size() && !up(traffic.packets[victim])) ++victim;
     const auto place = traffic.packets.begin() + static_cast<std::ptrdiff_t>(victim);
     traffic.packets.insert(place, lawful::LegalPacket(*place));
-    const std::multiset<std::string> found = failures_of(judge(run_of(), strict()));
+    const std::multiset<std::string> found = failures_of(judge(run_of(), complete()));
     if (found.empty()) continue;
     ++planted;
     const std::size_t step = early ? middle + middle / 2 : middle / 2;
@@ -189,7 +181,7 @@ TEST(Steps, ARealFaultInAStretchWithoutOneIsFound) {
       }
       const check::Run run = run_of();
       EXPECT_FALSE(run.steps.empty()) << seed << " " << by_us;
-      EXPECT_EQ(failures_of(judge(run, strict())), found) << seed << " " << by_us;
+      EXPECT_EQ(failures_of(judge(run, complete())), found) << seed << " " << by_us;
       traffic = std::move(whole);
     }
   }

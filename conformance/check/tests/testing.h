@@ -64,16 +64,24 @@ struct NetFields {
   }
   /// Returns its ack.
   NetFields ack(std::uint16_t own_seq_num) const {
-    NetFields out;
-    out.dest = src;
-    out.src = dest;
-    out.seq_num = own_seq_num;
-    out.trans_id = component::kRubiconAck;
-    out.app_id = app_id;
-    out.body = {23, static_cast<std::uint8_t>(seq_num >> 8), static_cast<std::uint8_t>(seq_num), 0};
-    return out;
+    return {.dest = src,
+            .src = dest,
+            .seq_num = own_seq_num,
+            .body = {23, static_cast<std::uint8_t>(seq_num >> 8),
+                     static_cast<std::uint8_t>(seq_num), 0},
+            .trans_id = component::kRubiconAck,
+            .app_id = app_id};
   }
 };
+
+inline NetFields message(machine::Address src, machine::Address dest, std::uint16_t seq_num,
+                         std::uint8_t reliable = 0) {
+  return {.dest = dest, .src = src, .reliable = reliable, .seq_num = seq_num};
+}
+/// From a mote of island 11 to its PC.
+inline NetFields update(std::uint16_t mote, std::uint16_t seq_num) {
+  return message({11, mote}, {11, machine::kNullDevid}, seq_num);
+}
 
 /// Frames one after the other; times in ms.
 class Script {
@@ -161,11 +169,8 @@ class Script {
   }
   Script& joined(double ms, std::uint16_t island, std::uint16_t mote, std::uint32_t tap = 1,
                  const machine::Descriptor& descriptor = kDescriptor) {
-    NetFields net;
-    net.dest = {island, machine::kNullDevid};
-    net.src = {island, mote};
-    net.app_id = 10;
-    net.body = {16};
+    NetFields net{
+        .dest = {island, machine::kNullDevid}, .src = {island, mote}, .body = {16}, .app_id = 10};
     put(net.body, machine::Address{island, mote});
     put(net.body, descriptor);
     return serial(ms, false, am::kNet, net.forwarded().bytes(), tap);

@@ -5,28 +5,21 @@
 
 #include <string>
 
-#include "codec/reflect/requirements.h"
 #include "conformance/check/observation.h"
+#include "conformance/check/tests/failures.h"
 #include "conformance/check/tests/must_read.h"
 
 namespace rubric::check {
 
 inline Report judge_log(const std::string& log, bool sniffer_complete = false) {
   const check::Run run = must_read("log", log);
-  Options options;
-  options.start_cold = true;
-  options.sniffer_complete = sniffer_complete;
+  Options options{.sniffer_complete = sniffer_complete, .start_cold = true};
   return judge(run, options);
 }
 
 /// Returns the rules that are found, in order, with a severity of at least `least`.
 inline std::string found(const std::string& log, Severity least) {
-  std::string out;
-  for (const Finding& finding : judge_log(log).findings) {
-    if (finding.severity < least) continue;
-    out += std::string(out.empty() ? "" : " ") + reflect::requirement(finding.requirement).id;
-  }
-  return out;
+  return rules_of(judge_log(log).findings, least);
 }
 
 /// Returns one line at so many ms.

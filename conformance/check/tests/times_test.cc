@@ -47,8 +47,7 @@ TEST(Times, NothingFailsByAnUnknownOrder) {
   for (const char* name : kCaptures) {
     for (const bool strict : {false, true}) {
       auto run = capture(name);
-      Options options;
-      options.sniffer_complete = options.start_cold = strict;
+      Options options{.sniffer_complete = strict, .start_cold = strict};
       const auto before = failures_of(judge(run, options));
       lose_serial_times(run);
       for (const std::string& failure : failures_of(judge(run, options))) {
@@ -61,20 +60,14 @@ TEST(Times, NothingFailsByAnUnknownOrder) {
 // A mote joins and sends a message, which goes up the line.
 Script one_mote() {
   Script script;
-  NetFields up;
-  up.dest = {11, machine::kNullDevid};
-  up.src = {11, 2};
-  up.seq_num = 1;
+  NetFields up{.dest = {11, machine::kNullDevid}, .src = {11, 2}, .seq_num = 1};
   script.join(0, 11, 2, 100).net(200, 2, 1, up).up(215, up.forwarded());
   return script;
 }
 
 TEST(Times, AFormatIsBrokenAtAnyTime) {
   Script script = one_mote();
-  NetFields own;
-  own.dest = {11, machine::kNullDevid};
-  own.src = {11, 1};
-  own.nbytes = 1;
+  NetFields own{.dest = {11, machine::kNullDevid}, .src = {11, 1}, .nbytes = 1};
   script.up(300, own);
   lose_serial_times(script.run);
   EXPECT_EQ(failures_of(judge(script.run, Options{})).size(), 1U);
@@ -84,15 +77,10 @@ TEST(Times, AFileAloneWithoutThemKeepsItsOrder) {
   Script script;
   script.joined(40, 11, 2).joined(50, 11, 2);
   lose_serial_times(script.run);
-  Options options;
-  options.start_cold = true;
+  Options options{.start_cold = true};
   // Nothing is heard on the air, so an ack_join may always have escaped.
   EXPECT_TRUE(failures_of(judge(script.run, options)).empty());
-  NetFields fields;
-  fields.dest = {11, machine::kNullDevid};
-  fields.src = {11, 1};
-  fields.seq_num = 7;
-  fields.nbytes = 200;
+  NetFields fields{.dest = {11, machine::kNullDevid}, .src = {11, 1}, .seq_num = 7, .nbytes = 200};
   script.up(60, fields);
   lose_serial_times(script.run);
   EXPECT_EQ(failures_of(judge(script.run, options)).size(), 1U);

@@ -14,19 +14,14 @@ constexpr std::int64_t kSettleUs = 1000;
 
 Finding finding(std::uint64_t frame, std::string node, Severity severity = Severity::kFail,
                 ReqId rule = "J4-SEQ"_rule) {
-  Finding out;
-  out.requirement = rule;
-  out.severity = severity;
+  Finding out{.requirement = rule, .severity = severity};
   out.place = out.last = {0, frame, 0, static_cast<std::int64_t>(frame) * 100};
   out.node = std::move(node);
   return out;
 }
 
 Report report(std::vector<Finding> findings, std::vector<std::string> facts = {}) {
-  Report out;
-  out.findings = std::move(findings);
-  out.facts = std::move(facts);
-  return out;
+  return {.findings = std::move(findings), .facts = std::move(facts)};
 }
 
 TEST(WatchTest, WhatLastsForAWhileIsReportedOnce) {

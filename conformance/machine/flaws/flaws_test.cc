@@ -11,20 +11,9 @@
 namespace rubric::flaws {
 namespace {
 
-machine::Config mote() {
-  machine::Config config;
-  config.id = 5;
-  config.first_seq = 100;
-  return config;
-}
+machine::Config mote() { return {.id = 5, .first_seq = 100}; }
 
-machine::Config sink() {
-  machine::Config config;
-  config.role = machine::Role::kSink;
-  config.id = 1;
-  config.island = 11;
-  return config;
-}
+machine::Config sink() { return {.role = machine::Role::kSink, .id = 1, .island = 11}; }
 
 TEST(Flaws, HaveNamesRulesAndSteps) {
   std::set<std::string> names;

@@ -165,23 +165,12 @@ inline constexpr Descriptor kDescriptor{1, 1, 0x43};
 inline constexpr std::uint16_t kIsland = 11;
 inline constexpr std::uint16_t kOther = 12;  ///< Another island.
 
-inline Config mote_config(std::uint16_t id) {
-  Config config;
-  config.id = id;
-  return config;
-}
+inline Config mote_config(std::uint16_t id) { return {.id = id}; }
 inline Config sink_config(std::uint16_t island = kIsland) {
-  Config config;
-  config.role = Role::kSink;
-  config.id = 1;
-  config.island = island;
-  return config;
+  return {.role = Role::kSink, .id = 1, .island = island};
 }
 inline Config base_config(std::uint16_t island = kIsland) {
-  Config config;
-  config.role = Role::kBaseStation;
-  config.island = island;
-  return config;
+  return {.role = Role::kBaseStation, .island = island};
 }
 
 /// Returns a mote that is a member of kIsland and has nothing to send.

@@ -77,8 +77,7 @@ INSTANTIATE_TEST_SUITE_P(Transport, HearAck, testing::ValuesIn(kAcks),
 
 TEST(Awaited, T3_Timeout_IsFailureAfterTheProfilesTime) {
   AwaitedList list;
-  Profile profile;
-  profile.ack_timeout_ticks = 640;
+  Profile profile{.ack_timeout_ticks = 640};
   sent(list, profile, 1000, 7, kControl, kMote4);
   EXPECT_EQ(list[0].due, 1640U);
   Actions actions;
@@ -94,8 +93,7 @@ TEST(Awaited, T3_Timeout_IsFailureAfterTheProfilesTime) {
 
 TEST(Awaited, T3_Timeout_NoneInAProfileWithout) {
   AwaitedList list;
-  Profile profile;
-  profile.ack_timeout_ticks = 0;
+  Profile profile{.ack_timeout_ticks = 0};
   sent(list, profile, 1000, 7, kControl, kMote4);
   EXPECT_EQ(list[0].due, 0U);
 }

@@ -60,12 +60,11 @@ std::uint16_t Endpoint::send(Address dest, std::uint8_t app, const Octets& body,
 
 std::uint16_t Endpoint::send_message(Address dest, std::uint8_t app, const Octets& body,
                                      bool reliable, int tries, int old_seq) {
-  NetMessage message;
-  message.dest = dest;
-  message.src = address_;
-  message.reliable = reliable;
-  message.seq = old_seq >= 0 ? static_cast<std::uint16_t>(old_seq) : fresh_seq();
-  message.payload = app_msg(rubicon::Component::kConnless, app, body);
+  NetMessage message{.dest = dest,
+                     .src = address_,
+                     .reliable = reliable,
+                     .seq = old_seq >= 0 ? static_cast<std::uint16_t>(old_seq) : fresh_seq(),
+                     .payload = app_msg(rubicon::Component::kConnless, app, body)};
   const bool taken = route(message);
   event("send", fmt::format("{},\"reliable\":{},\"comp\":{},\"nbytes\":{},\"seq_num\":{}",
                             address_fields("dest", dest), reliable ? 1 : 0, app, body.size(),
@@ -82,12 +81,7 @@ std::uint16_t Endpoint::send_message(Address dest, std::uint8_t app, const Octet
 }
 
 bool Endpoint::send_unreliable(Address dest, const Octets& payload) {
-  NetMessage message;
-  message.dest = dest;
-  message.src = address_;
-  message.seq = fresh_seq();
-  message.payload = payload;
-  return route(message);
+  return route(NetMessage{.dest = dest, .src = address_, .seq = fresh_seq(), .payload = payload});
 }
 
 void Endpoint::timed_out(std::uint16_t seq, std::uint64_t token) {

@@ -54,10 +54,9 @@ void Mote::send_request() {
   if (++requests_ > 1 && traits.new_seq_per_retry) seq_ = fresh_seq();
   waiting_ = true;
   accepted_ = false;
-  RadioFrame frame;
-  frame.dst = kSinkAm;
-  frame.type = static_cast<std::uint8_t>(rubicon::AmType::kJoin);
-  frame.payload = join_request(seq_, plan_.descriptor);
+  RadioFrame frame{.dst = kSinkAm,
+                   .type = static_cast<std::uint8_t>(rubicon::AmType::kJoin),
+                   .payload = join_request(seq_, plan_.descriptor)};
   transmit(std::move(frame));
   start_join_timer();
 }
@@ -121,11 +120,10 @@ void Mote::on_reply(const RadioFrame& frame) {
 }
 
 void Mote::send_ack_join() {
-  RadioFrame frame;
-  frame.dst = kSinkAm;
-  frame.type = static_cast<std::uint8_t>(rubicon::AmType::kAckJoin);
-  frame.ack_request = true;
-  frame.payload = ack_join({address_.pid, kSinkAm}, address_, seq_, plan_.descriptor);
+  RadioFrame frame{.dst = kSinkAm,
+                   .type = static_cast<std::uint8_t>(rubicon::AmType::kAckJoin),
+                   .ack_request = true,
+                   .payload = ack_join({address_.pid, kSinkAm}, address_, seq_, plan_.descriptor)};
   const bool again = ++ack_joins_ > 1;
   const bool same_dsn = again && world().traits().ack_join_same_dsn;
   frame.dsn = ack_join_dsn_;

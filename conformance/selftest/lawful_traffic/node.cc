@@ -37,10 +37,9 @@ void Node::work(bool buffered, std::function<void()> call) {
 bool Node::radio_full() const { return queued() >= world().traits().out_buffer; }
 
 void Node::transmit_net(const NetMessage& message, std::uint16_t am) {
-  RadioFrame frame;
-  frame.dst = am;
-  frame.type = static_cast<std::uint8_t>(rubicon::AmType::kNet);
-  frame.payload = encode(message);
+  RadioFrame frame{.dst = am,
+                   .type = static_cast<std::uint8_t>(rubicon::AmType::kNet),
+                   .payload = encode(message)};
   transmit(std::move(frame));
 }
 
@@ -53,10 +52,7 @@ void Node::reboot_clock() {
 }
 
 std::size_t Node::create_out(Address dest, std::size_t size, bool power_save) {
-  OutChannel channel;
-  channel.dest = dest;
-  channel.size = size;
-  channel.power_save = power_save;
+  OutChannel channel{.dest = dest, .size = size, .power_save = power_save};
   channel.values.assign(size, 0.5F);
   channels_.push_back(std::move(channel));
   return channels_.size() - 1;

@@ -74,9 +74,7 @@ void Sink::on_ack_join(const RadioFrame& frame) {
   if (members_.size() >= world().traits().members_max) return;
   if (!members_.insert(frame.src).second) return;
   event("moteJoined", fmt::format(",\"island\":{},\"mote\":{}", address_.pid, frame.src));
-  NetMessage report;
-  report.dest = {address_.pid, kNull};
-  report.src = {address_.pid, frame.src};
+  NetMessage report{.dest = {address_.pid, kNull}, .src = {address_.pid, frame.src}};
   // A sink that keeps nbytes true counts its reports, too; release 1.0 sends 0.
   report.seq = world().traits().serial_true_nbytes ? fresh_seq() : std::uint16_t{0};
   report.payload = app_msg(rubicon::Component::kConnless,

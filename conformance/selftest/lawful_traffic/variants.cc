@@ -30,11 +30,7 @@ void usual(Plan&, Random&) {}
 }  // namespace
 
 MotePlan mote_plan(std::uint16_t id, int island, std::int64_t boot_us) {
-  MotePlan out;
-  out.id = id;
-  out.island = island;
-  out.boot_us = boot_us;
-  return out;
+  return {.id = id, .island = island, .boot_us = boot_us};
 }
 
 Plan common_plan(Random& random) {

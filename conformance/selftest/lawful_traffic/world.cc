@@ -20,10 +20,7 @@ Outsider::Outsider(World& world, int number, std::uint16_t am) : Device(world, n
 }
 
 void Outsider::send(std::uint16_t dst, std::uint8_t am_type, Octets payload) {
-  RadioFrame frame;
-  frame.dst = dst;
-  frame.type = am_type;
-  frame.payload = std::move(payload);
+  RadioFrame frame{.dst = dst, .type = am_type, .payload = std::move(payload)};
   transmit(std::move(frame));
 }
 

@@ -29,17 +29,17 @@ inline void add(Mutants& out, std::string name, std::string breaks, std::vector<
   out.push_back({std::move(name), std::move(breaks), std::move(requirements), std::move(step)});
 }
 
-/// Return common mistakes, by the family of the rule that they break. Names are unique.
-Mutants network_mutants();       ///< N1 to N5.
-Mutants island_mutants();        ///< N6 to N9.
-Mutants control_mutants();       ///< N10 to N12.
-Mutants mote_join_mutants();     ///< J, at motes: requests, timer, ends.
-Mutants mote_accept_mutants();   ///< J, at motes: replies and their ack_join.
-Mutants sink_join_mutants();     ///< J, at sinks.
-Mutants delivery_mutants();      ///< T1, T2: to and from applications.
-Mutants transport_mutants();     ///< T2 to T4: acks.
-Mutants synaptic_mutants();      ///< S1 to S3.
-Mutants channel_life_mutants();  ///< S4 to S6.
+/// Add common mistakes, by the family of the rule that they break. Names are unique.
+void network_mutants(Mutants& out);       ///< N1 to N5.
+void island_mutants(Mutants& out);        ///< N6 to N9.
+void control_mutants(Mutants& out);       ///< N10 to N12.
+void mote_join_mutants(Mutants& out);     ///< J, at motes: requests, timer, ends.
+void mote_accept_mutants(Mutants& out);   ///< J, at motes: replies and their ack_join.
+void sink_join_mutants(Mutants& out);     ///< J, at sinks.
+void delivery_mutants(Mutants& out);      ///< T1, T2: to and from applications.
+void transport_mutants(Mutants& out);     ///< T2 to T4: acks.
+void synaptic_mutants(Mutants& out);      ///< S1 to S3.
+void channel_life_mutants(Mutants& out);  ///< S4 to S6.
 /// Returns all of these, and the flaws of release 1.0 (conformance/machine/flaws).
 Mutants named_mutants();
 

@@ -167,11 +167,8 @@ void add_ends(Mutants& out) {
       }));
 }
 
-void append(Mutants& out, const Mutants& more) { out.insert(out.end(), more.begin(), more.end()); }
-
-// Returns the mutants of release 1.0, which are steps without a memory.
-Mutants release_mutants() {
-  Mutants out;
+// Those of release 1.0, which are steps without a memory.
+void release_mutants(Mutants& out) {
   for (const flaws::Flaw& flaw : flaws::all()) {
     Mutant mutant{flaw.name, flaw.description, {}, [step = flaw.step]() -> Step {
                     return [step](Moment& moment) {
@@ -183,31 +180,23 @@ Mutants release_mutants() {
     }
     out.push_back(std::move(mutant));
   }
-  return out;
 }
 
 }  // namespace
 
-Mutants channel_life_mutants() {
-  Mutants out;
+void channel_life_mutants(Mutants& out) {
   add_local_and_unknown(out);
   add_ends(out);
-  return out;
 }
 
 Mutants named_mutants() {
   Mutants out;
-  append(out, release_mutants());
-  append(out, mote_join_mutants());
-  append(out, mote_accept_mutants());
-  append(out, sink_join_mutants());
-  append(out, network_mutants());
-  append(out, island_mutants());
-  append(out, control_mutants());
-  append(out, delivery_mutants());
-  append(out, transport_mutants());
-  append(out, synaptic_mutants());
-  append(out, channel_life_mutants());
+  for (const auto add_family :
+       {release_mutants, mote_join_mutants, mote_accept_mutants, sink_join_mutants, network_mutants,
+        island_mutants, control_mutants, delivery_mutants, transport_mutants, synaptic_mutants,
+        channel_life_mutants}) {
+    add_family(out);
+  }
   return out;
 }
 

@@ -301,15 +301,13 @@ void add_numbers(Mutants& out) {
 
 }  // namespace
 
-Mutants control_mutants() {
-  Mutants out;
+void control_mutants(Mutants& out) {
   add_switches(out);
   add_lengths(out);
   add_cut(out);
   add_power(out);
   add_malformed(out);
   add_numbers(out);
-  return out;
 }
 
 }  // namespace rubric::mutants

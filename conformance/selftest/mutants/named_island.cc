@@ -247,13 +247,11 @@ void add_island_id(Mutants& out) {
 
 }  // namespace
 
-Mutants island_mutants() {
-  Mutants out;
+void island_mutants(Mutants& out) {
   add_sink_up(out);
   add_sink_down(out);
   add_base_station(out);
   add_island_id(out);
-  return out;
 }
 
 }  // namespace rubric::mutants

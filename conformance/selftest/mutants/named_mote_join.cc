@@ -354,20 +354,16 @@ void add_repeats(Mutants& out) {
 
 }  // namespace
 
-Mutants mote_join_mutants() {
-  Mutants out;
+void mote_join_mutants(Mutants& out) {
   add_requests(out);
   add_join_ends(out);
   add_timer(out);
   add_outside(out);
-  return out;
 }
 
-Mutants mote_accept_mutants() {
-  Mutants out;
+void mote_accept_mutants(Mutants& out) {
   add_acceptance(out);
   add_repeats(out);
-  return out;
 }
 
 }  // namespace rubric::mutants

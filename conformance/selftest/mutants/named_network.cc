@@ -264,13 +264,11 @@ void add_motes(Mutants& out) {
 
 }  // namespace
 
-Mutants network_mutants() {
-  Mutants out;
+void network_mutants(Mutants& out) {
   add_sending(out);
   add_buffers(out);
   add_addressing(out);
   add_motes(out);
-  return out;
 }
 
 }  // namespace rubric::mutants

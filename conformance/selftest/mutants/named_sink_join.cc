@@ -216,12 +216,10 @@ void add_acks(Mutants& out) {
 
 }  // namespace
 
-Mutants sink_join_mutants() {
-  Mutants out;
+void sink_join_mutants(Mutants& out) {
   add_replies(out);
   add_list(out);
   add_acks(out);
-  return out;
 }
 
 }  // namespace rubric::mutants

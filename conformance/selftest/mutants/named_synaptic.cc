@@ -253,11 +253,9 @@ void add_ticks(Mutants& out) {
 
 }  // namespace
 
-Mutants synaptic_mutants() {
-  Mutants out;
+void synaptic_mutants(Mutants& out) {
   add_operations(out);
   add_ticks(out);
-  return out;
 }
 
 }  // namespace rubric::mutants

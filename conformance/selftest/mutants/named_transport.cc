@@ -297,18 +297,12 @@ void add_delivery(Mutants& out) {
 
 }  // namespace
 
-Mutants transport_mutants() {
-  Mutants out;
+void transport_mutants(Mutants& out) {
   add_message_acks(out);
   add_needless_acks(out);
   add_sender(out);
-  return out;
 }
 
-Mutants delivery_mutants() {
-  Mutants out;
-  add_delivery(out);
-  return out;
-}
+void delivery_mutants(Mutants& out) { add_delivery(out); }
 
 }  // namespace rubric::mutants

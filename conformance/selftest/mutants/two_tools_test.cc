@@ -77,12 +77,8 @@ struct Recording {
 // Returns the options for a capture; none if the case itself sends from an address under test.
 std::optional<check::Options> options_of(const suite::CaseRun& run,
                                          const trace::Statement& stated) {
-  check::Options out;
-  out.deployed = run.profile == "deployed";
-  out.stated = stated;
-  trace::Scope scope;
-  scope.nodes = run.nodes;
-  scope.links = run.links;
+  check::Options out{.deployed = run.profile == "deployed", .stated = stated};
+  trace::Scope scope{.nodes = run.nodes, .links = run.links};
   std::set<std::uint16_t> own;
   bool host = false;
   for (const trace::NodeHeader& node : run.nodes) {
@@ -107,8 +103,7 @@ std::optional<check::Options> options_of(const suite::CaseRun& run,
 }
 
 std::vector<Recording> recordings(const suite::CaseRun& run, const trace::Statement& stated) {
-  check::Options plain;
-  plain.deployed = run.profile == "deployed";
+  check::Options plain{.deployed = run.profile == "deployed"};
   std::vector<Recording> out{{"log", suite::case_rtr(run), plain}};
   if (const auto options = options_of(run, stated)) {
     out.push_back({"capture", suite::case_pcapng(run), *options});
@@ -145,9 +140,7 @@ bool in_order(const suite::CaseRun& run) {
 
 // Returns the rules of lines that forbid a frame which came on a link that a recorder hears.
 std::set<std::string> forbidden_frames(const suite::CaseRun& run) {
-  trace::Scope scope;
-  scope.nodes = run.nodes;
-  scope.links = run.links;
+  trace::Scope scope{.nodes = run.nodes, .links = run.links};
   std::set<std::string> out;
   // Where an expected frame is missing, what came instead may be wrong only for this case.
   if (std::ranges::any_of(run.result.failures, [](const auto& one) { return !one.forbidden; })) {

@@ -214,11 +214,8 @@ Step read_step(Role role, Reader& in) {
     step.event = machine::Called{read_call(kind - kCall, in, step.bytes, kCalls)};
     return step;
   }
-  machine::Frame frame;
-  frame.link = link_of(role, in.below(2));
-  frame.dest = in.u16();
-  frame.src = in.u16();
-  frame.type = in.u8();
+  machine::Frame frame{
+      .link = link_of(role, in.below(2)), .dest = in.u16(), .src = in.u16(), .type = in.u8()};
   step.bytes = in.bytes(machine::kAmPayloadMax);
   step.event = machine::Heard{frame};
   return step;
@@ -269,9 +266,7 @@ Ticks fitting_delay(Ticks delay) {
 
 Script decode(Bytes bytes) {
   Reader in(bytes);
-  Script script;
-  script.config = read_config(in);
-  script.rest = in.u16();
+  Script script{.config = read_config(in), .rest = in.u16()};
   Ticks length = script.rest;
   while (!in.at_end() && script.steps.size() < kStepsMax) {
     Step& step = script.steps.emplace_back(read_step(script.config.role, in));

@@ -420,9 +420,7 @@ class CppTarget : public runner::Target, public node::Driver, public node::Appli
   void transmit(node::Line which, Bytes packet, bool link_ack) override {
     const auto header = tinyos::AmHeaderView::parse(packet);
     const Link link = link_of(which);
-    Output output;
-    output.time = now_;
-    output.is_frame = true;
+    Output output{.time = now_, .is_frame = true};
     machine::Transmit& out = output.frame;
     out.link = link;
     out.link_ack = link_ack;
@@ -461,9 +459,7 @@ class CppTarget : public runner::Target, public node::Driver, public node::Appli
     tell(machine::SynDataReceived{channel, static_cast<machine::DataStatus>(status)});
   }
   void tell(const Notice& notice) {
-    Output output;
-    output.time = now_;
-    output.news = events::from_notice(notice);
+    Output output{.time = now_, .news = events::from_notice(notice)};
     outputs_.push_back(std::move(output));
   }
 
@@ -486,8 +482,7 @@ Difference difference(const Script& script, flaws::StepFunction step) {
   const Script compared = without_guesses(until_free(without_undecided(script), step), step);
   runner::SubjectTarget reference(std::make_unique<runner::Machine>(step));
   const Played played = play(compared, reference);
-  Difference out;
-  out.steps = compared.steps.size();
+  Difference out{.steps = compared.steps.size()};
   if (played.outputs.size() > kOutputsMax) return out;
   const auto other = cpp_target();
   if (same(played.outputs, play(compared, *other).outputs)) return out;  // Mostly, and fast.

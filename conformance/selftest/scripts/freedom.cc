@@ -290,9 +290,7 @@ Script without_guesses(Script script, flaws::StepFunction step) {
 }
 
 Script without_undecided(const Script& script) {
-  Script out;
-  out.config = script.config;
-  out.rest = script.rest;
+  Script out{.config = script.config, .rest = script.rest};
   const std::uint8_t channels = out.config.profile.channels_max;
   out.config.profile = machine::kPaper;
   out.config.profile.channels_max = channels;

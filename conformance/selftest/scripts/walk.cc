@@ -5,10 +5,7 @@
 namespace rubric::script {
 
 explore::Options walk_options(explore::Scope scope, explore::StepFunction step) {
-  explore::Options options;
-  options.profile = machine::kPaper;
-  options.step = step;
-  options.scope = scope;
+  explore::Options options{.profile = machine::kPaper, .step = step, .scope = scope};
   options.motes = options.sinks = 2;
   options.loss = options.dup = options.reorder = options.collide = true;
   options.reboots = 1;

@@ -68,10 +68,9 @@ class Capture {
     // Each sender counts its own; of those that the case plays its address is known.
     const std::string sender = line.op == Op::kEmits ? line.node : std::string();
     const std::vector<std::uint8_t> bytes = radio_frame(frame, dsns_[{sender, frame.src}]++);
-    Packet packet;
-    packet.framing = Framing::kRadio;
-    packet.link_type = kLinkRadioFcs;
-    packet.bytes = Bytes(bytes.data(), bytes.size());
+    Packet packet{.framing = Framing::kRadio,
+                  .bytes = Bytes(bytes.data(), bytes.size()),
+                  .link_type = kLinkRadioFcs};
     packet.fcs = fcs(packet.bytes);
     write(line, packet);
   }
@@ -80,9 +79,7 @@ class Capture {
     const auto node = std::find_if(one_.nodes.begin(), one_.nodes.end(),
                                    [&](const auto& each) { return each.name == line.node; });
     const bool at_base = node != one_.nodes.end() && !trace::role_info(node->role).radio;
-    Packet packet;
-    packet.framing = Framing::kHdlc;
-    packet.link_type = kLinkSerial;
+    Packet packet{.framing = Framing::kHdlc, .link_type = kLinkSerial};
     packet.direction =
         at_base == (line.op == Op::kEmits) ? Direction::kInbound : Direction::kOutbound;
     packet.kind = kSerialPacketNoAck;

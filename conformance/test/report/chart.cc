@@ -104,9 +104,7 @@ std::string fields_text(const trace::Message& message) {
 // `is_frame`: what stands for a frame though it has no addresses.
 SequenceRow::Way way_of(const Line& line, const CaseRun& one, bool is_frame) {
   using Way = SequenceRow::Way;
-  trace::Scope scope;
-  scope.nodes = one.nodes;
-  scope.links = one.links;
+  trace::Scope scope{.nodes = one.nodes, .links = one.links};
   if (!is_frame)
     return line.link == "app" && line.message.name != "busy" && line.message.name != "idle"
                ? Way::kCall
@@ -172,11 +170,10 @@ class Chart {
     if (with_failures) {
       for (const runner::Failure& failure : one_.result.failures) mark(failure);
     }
-    report::Sequence out;
-    out.columns = stage_.names();
-    out.about = stage_.about();
-    out.number_title = "tick";
-    out.rows = std::move(rows_);
+    report::Sequence out{.columns = stage_.names(),
+                         .about = stage_.about(),
+                         .number_title = "tick",
+                         .rows = std::move(rows_)};
     drop_idle_columns(out);
     return out;
   }
@@ -344,8 +341,7 @@ class Chart {
 }  // namespace
 
 MachineRun run_on_machine(const SuiteCase& one) {
-  MachineRun out;
-  out.run = one.blank;
+  MachineRun out{.run = one.blank};
   out.run.result =
       runner::run_case(one.file->file, *one.one,
                        [&](const trace::NodeHeader& node) -> std::unique_ptr<runner::Target> {
@@ -384,8 +380,7 @@ std::size_t Stage::column(std::string_view name) const {
 }
 
 SequenceRow Stage::row(const Line& line) const {
-  SequenceRow row;
-  row.label = short_text(line.message);
+  SequenceRow row{.label = short_text(line.message)};
   const std::size_t node = column(line.node);
   const bool given = line.op == Op::kGiven;
   const bool frame = line.am.has_value();

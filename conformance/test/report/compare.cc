@@ -59,9 +59,7 @@ Comparison compare(const SuiteRun& run, const EarlierRun& earlier) {
   }
   for (const auto& [key, verdict] : earlier.verdicts) {
     if (here.contains(key)) continue;
-    CaseRun one;
-    one.name = key.case_name;
-    one.repeat = key.repeat;
+    CaseRun one{.name = key.case_name, .repeat = key.repeat};
     out.gone.push_back({name_of(run, key), case_name(one), verdict, {}});
   }
   return out;

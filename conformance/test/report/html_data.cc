@@ -226,9 +226,7 @@ class Data {
 
   // Returns the log without empty keys: logs are most of the page.
   Json log(const CaseRun& one, const std::vector<const Line*>& lines) {
-    trace::Scope scope;
-    scope.nodes = one.nodes;
-    scope.links = one.links;
+    trace::Scope scope{.nodes = one.nodes, .links = one.links};
     Json out = Json::array();
     for (const Line* each : lines) {
       const Line& line = *each;

@@ -37,8 +37,7 @@ using ::testing::Not;
 const SuiteRun& whole() {
   static const SuiteRun run = [] {
     static const Cases cases = Cases::own();
-    Plan plan;
-    plan.cases = cases.all();
+    Plan plan{.cases = cases.all()};
     SuiteRun out;
     out.implementations.push_back(suite::run(
         "machine", [] { return std::make_unique<testing::FakeAttachment>(); }, plan));
@@ -57,9 +56,7 @@ const CaseRun& one(const std::string& name) {
 TEST(FrameView, EachByteOfEachFrameHasItsField) {
   std::size_t frames = 0;
   for (const CaseRun& each : whole().implementations[0].cases) {
-    trace::Scope scope;
-    scope.nodes = each.nodes;
-    scope.links = each.links;
+    trace::Scope scope{.nodes = each.nodes, .links = each.links};
     for (const trace::Line* line : each.result.log.lines()) {
       if (!line->bytes) continue;
       const FrameView view = view_frame(*line->bytes, scope.link(line->link).value());
@@ -323,14 +320,13 @@ TEST(HtmlData, KnowsTheEarlierRunAndWhatBrokeARule) {
   const std::vector<const trace::Line*> lines = broken.result.log.lines();
   std::size_t at = 0;
   while (lines[at]->message.name != "ack_join") ++at;
-  runner::Failure failure;
-  failure.place = {14, 1};
-  failure.requirements = {"J4-ACK"};
-  failure.expected = "0..300 m5 !> rA ack_join(*)";
-  failure.node = lines[at]->node;
-  failure.time = static_cast<runner::Ticks>(lines[at]->time.from);
-  failure.text = "it emitted rA " + trace::print(lines[at]->message);
-  failure.forbidden = true;
+  runner::Failure failure{.place = {14, 1},
+                          .requirements = {"J4-ACK"},
+                          .time = static_cast<runner::Ticks>(lines[at]->time.from),
+                          .expected = "0..300 m5 !> rA ack_join(*)",
+                          .text = "it emitted rA " + trace::print(lines[at]->message),
+                          .forbidden = true,
+                          .node = lines[at]->node};
   broken.result.failures = {failure};
   EarlierRun earlier;
   earlier.verdicts[{"machine", "j4.accept"}] = "pass";

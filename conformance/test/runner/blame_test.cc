@@ -9,8 +9,7 @@ namespace {
 using Rules = std::vector<std::string>;
 
 std::string blamed(Rules rules, const Evidence& evidence) {
-  Failure failure;
-  failure.requirements = std::move(rules);
+  Failure failure{.requirements = std::move(rules)};
   const std::size_t all = failure.requirements.size();
   blame_one(failure, evidence);
   EXPECT_EQ(failure.requirements.size(), 1u);
@@ -57,8 +56,7 @@ TEST(Blame, AnAckOfAnotherNumberAndWhatIsMissingOnItsOwn) {
 }
 
 TEST(Blame, AnAckThatDiffersIsWrongWhateverItWasAskedFor) {
-  Failure next;
-  next.requirements = {"N11-NEXT"};
+  Failure next{.requirements = {"N11-NEXT"}};
   blame_one(next, {"differs", "ack", "payload"});
   EXPECT_EQ(next.requirements, Rules{"T2-CONTENT"});
   EXPECT_EQ(next.suspected, Rules{"N11-NEXT"});

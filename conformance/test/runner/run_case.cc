@@ -48,8 +48,7 @@ class Run {
   }
 
   CaseResult finish() {
-    CaseResult result;
-    result.name = case_.name;
+    CaseResult result{.name = case_.name};
     try {
       start();
       begun_ = true;
@@ -469,8 +468,7 @@ class Run {
   }
 
   void set_error(CaseResult& result, trace::Place place, const char* why) {
-    Failure failure;
-    failure.place = place;
+    Failure failure{.place = place};
     failure.time = failure.from = failure.to = failure.broken_at = now_;
     failure.text = why;
     result.failures.push_back(std::move(failure));

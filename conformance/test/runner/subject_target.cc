@@ -91,9 +91,7 @@ void SubjectTarget::step(Ticks now, const Event& event) {
 void SubjectTarget::collect(Ticks now) {
   for (const Action& action : actions_.all()) {
     labels_.push_back(action);
-    Output output;
-    output.time = now;
-    output.requirement = action.requirement;
+    Output output{.time = now, .requirement = action.requirement};
     if (action.what == Action::What::kTransmit) {
       output.is_frame = true;
       output.frame = actions_.transmit_of(action);

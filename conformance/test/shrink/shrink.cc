@@ -249,8 +249,7 @@ Shrunk shrink(const trace::File& file, const trace::Case& one, const StillShows&
 }
 
 trace::File only(const trace::File& file, const trace::Case& one) {
-  trace::File out;
-  out.head = file.head;
+  trace::File out{.head = file.head};
   out.cases.push_back(one);
   return out;
 }
@@ -260,8 +259,7 @@ CaseResult play(const trace::File& file, const Player& player) {
   if (!player.profile.empty()) {
     trace::set_header(asked, asked.cases.at(0), trace::ProfileHeader{player.profile});
   }
-  CaseResult result;
-  result.reason = trace::state(asked, asked.cases.at(0), player.stated).text;
+  CaseResult result{.reason = trace::state(asked, asked.cases.at(0), player.stated).text};
   if (result.reason.empty()) return runner::run_case(asked, asked.cases.at(0), player.make);
   result.verdict = CaseVerdict::kSkip;
   return result;

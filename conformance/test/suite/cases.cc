@@ -34,9 +34,7 @@ std::string comment_of(const trace::Case& one) {
 }
 
 SuiteCase suite_case(const trace::Parsed& file, const trace::Case& one) {
-  SuiteCase out;
-  out.file = &file;
-  out.one = &one;
+  SuiteCase out{.file = &file, .one = &one};
   const trace::Scope scope = trace::scope_of(file.file, one);
   out.blank.name = one.name;
   out.blank.file = file.file_name;

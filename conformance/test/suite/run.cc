@@ -108,29 +108,14 @@ class PlanRun {
   std::size_t reported_ = 0;
 };
 
-runner::CaseResult of_machine(const trace::File& head, const trace::Case& one) {
-  return runner::run_case(head, one, [](const trace::NodeHeader&) {
-    return std::make_unique<runner::SubjectTarget>(std::make_unique<runner::Machine>());
-  });
+// Whether it says no rule: a line of a set-up names none.
+bool is_nameless(const runner::Failure& failure) {
+  return failure.requirements.empty() && !failure.forbidden && !failure.crash;
 }
 
-std::vector<std::uint32_t> lines_of_profile(const trace::File& head, const trace::Case& one) {
-  std::vector<std::uint32_t> lines;
-  for (const runner::Failure& failure : of_machine(head, one).failures) {
-    lines.push_back(failure.place.line);
-  }
-  return lines;
-}
-
-// A line of a set-up names no rule; then what is missing broke the one by which the machine does
-// it.
-void blame_as_machine(const trace::File& head, const trace::Case& one,
+// Gives nameless failures the rule by which the machine does what is missing; `right` is its run.
+void blame_as_machine(const runner::CaseResult& right, const trace::Case& one,
                       std::vector<runner::Failure>& failures) {
-  const auto nameless = [](const runner::Failure& failure) {
-    return failure.requirements.empty() && !failure.forbidden && !failure.crash;
-  };
-  if (!trace::protocol().has_machine || std::ranges::none_of(failures, nameless)) return;
-  const runner::CaseResult right = of_machine(head, one);
   const std::vector<const trace::Line*> asked = one.lines();
   for (runner::Failure& failure : failures) {
     const auto line = std::ranges::find_if(
@@ -138,7 +123,7 @@ void blame_as_machine(const trace::File& head, const trace::Case& one,
     const bool kept = std::ranges::none_of(right.failures, [&](const runner::Failure& its) {
       return its.place.line == failure.place.line;
     });
-    if (!nameless(failure) || line == asked.end() || !kept) continue;
+    if (!is_nameless(failure) || line == asked.end() || !kept) continue;
     std::int64_t nearest = std::numeric_limits<std::int64_t>::max();
     for (const trace::Line* did : right.log.lines()) {
       if (did->op != trace::Op::kEmits || did->node != failure.node) continue;
@@ -149,6 +134,21 @@ void blame_as_machine(const trace::File& head, const trace::Case& one,
       failure.requirements.assign(1, did->requirements.front());
     }
   }
+}
+
+// Plays a case that failed with the machine, where its run says more: on which lines another
+// profile has it fail, too, and what nameless failures broke.
+void compare_with_machine(const trace::File& head, const trace::Case& one, CaseRun& out) {
+  const bool other = out.profile != "paper";
+  if (!trace::protocol().has_machine) return;
+  if (!other && std::ranges::none_of(out.result.failures, is_nameless)) return;
+  const runner::CaseResult right = runner::run_case(head, one, [](const trace::NodeHeader&) {
+    return std::make_unique<runner::SubjectTarget>(std::make_unique<runner::Machine>());
+  });
+  for (const runner::Failure& failure : right.failures) {
+    if (other) out.lines_of_profile.push_back(failure.place.line);
+  }
+  blame_as_machine(right, one, out.result.failures);
 }
 
 }  // namespace
@@ -178,10 +178,7 @@ CaseRun run_one(const SuiteCase& one, targets::Attachment& attachment, const std
       out.result = runner::run_case(head, itself,
                                     [&](const trace::NodeHeader&) { return attachment.target(); });
       out.foreign = out.result.not_built;
-      const bool failed = out.result.verdict == CaseVerdict::kFail;
-      const bool other = trace::protocol().has_machine && out.profile != "paper";
-      if (failed && other) out.lines_of_profile = lines_of_profile(head, itself);
-      if (failed) blame_as_machine(head, itself, out.result.failures);
+      if (out.result.verdict == CaseVerdict::kFail) compare_with_machine(head, itself, out);
     } else {
       out.result.verdict = CaseVerdict::kSkip;
       out.result.reason = missing;

@@ -279,8 +279,7 @@ TEST_F(BrokenAdapters, ASinkIsHeldToTheMembersThatItIsAskedFor) {
       files, [&](const trace::Parsed& one) { return one.file.find(name) != nullptr; });
   ASSERT_NE(file, files.end());
   const auto run = [&](const std::string& filter, const trace::Statement& stated) {
-    Options options;
-    options.stated = stated;
+    Options options{.stated = stated};
     const auto sink =
         attach(fmt::format("sed -u {} | {}", filter, RUBRIC_MACHINE_ADAPTER), options);
     return runner::run_case(file->file, *file->file.find(name),
@@ -306,8 +305,7 @@ TEST_F(BrokenAdapters, ANodeIsAskedForTheBuffersThatItStates) {
         trace::parse("%rtr 1\n%node m5 mote id=5" + says +
                          " iut\ncase silent\n @0..1024 m5 !> rA * [J1-CALLED]\n",
                      "a.rtr");
-    Options options;
-    options.stated = stated;
+    Options options{.stated = stated};
     const auto node =
         attach("sed -u '/buffers=/s/^reset/resize/' | " RUBRIC_MACHINE_ADAPTER, options);
     return runner::run_case(one.file, one.file.cases.at(0),

@@ -340,9 +340,7 @@ runner::Reach AppChannel::shown() const {
 }
 
 void AppChannel::reset(const machine::Config& config, const trace::Statement& own) {
-  Asked asked;
-  asked.command = reset_command(config, own);
-  asked.closing = "ready";
+  Asked asked{.command = reset_command(config, own), .closing = "ready"};
   client_->ask(asked);
   now_ = 0;
 }
@@ -359,8 +357,7 @@ std::vector<Output> AppChannel::give(const machine::Event& event) {
 std::vector<Output> AppChannel::poll() { return ask(fmt::format("until {}", now_), true); }
 
 std::vector<Output> AppChannel::ask(std::string command, bool passes_time) {
-  Asked asked;
-  asked.command = std::move(command);
+  Asked asked{.command = std::move(command)};
   asked.from = asked.to = now_;
   asked.passes_time = passes_time;
   asked.real_time = true;

@@ -153,9 +153,7 @@ void AnswerReader::add(Output output) {
 }
 
 void AnswerReader::tx(Words words) {
-  Output output;
-  output.time = output_time(words);
-  output.is_frame = true;
+  Output output{.time = output_time(words), .is_frame = true};
   const std::string_view link = words.next();
   const auto which = link_of(link);
   if (!which) fail(fmt::format("{} is not a link: radio, serial or peis", quoted(link)));
@@ -184,8 +182,7 @@ void AnswerReader::tx(Words words) {
 }
 
 void AnswerReader::up(Words words) {
-  Output output;
-  output.time = output_time(words);
+  Output output{.time = output_time(words)};
   std::string_view text = words.rest();
   output.requirement = requirement(text);
   trace::Concrete message;

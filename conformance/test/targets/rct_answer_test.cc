@@ -11,17 +11,9 @@ using runner::TargetBroken;
 
 constexpr const char* kHex = "000001000506000e03e802000701";
 
-Asked until() {
-  Asked asked;
-  asked.command = "until 300";
-  asked.from = 100;
-  asked.to = 300;
-  asked.passes_time = true;
-  return asked;
-}
+Asked until() { return {.command = "until 300", .from = 100, .to = 300, .passes_time = true}; }
 Asked call() {
-  Asked asked;
-  asked.command = "call 100 get_clock()";
+  Asked asked{.command = "call 100 get_clock()"};
   asked.from = asked.to = 100;
   return asked;
 }
@@ -166,9 +158,7 @@ TEST(RctAnswer, LongLinesAreShownInPart) {
 }
 
 TEST(RctAnswer, NothingButTheClosingLineBeforeANodeRuns) {
-  Asked asked;
-  asked.command = "reset mote id=5";
-  asked.closing = "ready";
+  Asked asked{.command = "reset mote id=5", .closing = "ready"};
   EXPECT_EQ(wrong_with(asked, {"tx 0 radio 00"}),
             "line 1 of the answer to `reset mote id=5`: expected `ready`, given 'tx 0 radio 00'");
   EXPECT_EQ(wrong_with(asked, {"note new", "ready"}), "");

@@ -21,9 +21,7 @@ RctClient::~RctClient() {
 
 const Identity& RctClient::hello() {
   if (greeted_) return identity_;
-  Asked asked;
-  asked.command = fmt::format("hello rct/{}", kRctVersion);
-  asked.closing = "hello";
+  Asked asked{.command = fmt::format("hello rct/{}", kRctVersion), .closing = "hello"};
   try {
     identity_ = read_hello(converse(asked, options_.start_timeout).closing());
   } catch (const runner::Unsupported& error) {
@@ -42,9 +40,7 @@ Answer RctClient::ask(const Asked& asked, lines::Milliseconds longer) {
 }
 
 std::string RctClient::honesty() {
-  Asked asked;
-  asked.command = "frobnicate 17 radio";
-  asked.closing = "unsupported";
+  Asked asked{.command = "frobnicate 17 radio", .closing = "unsupported"};
   try {
     converse(asked, options_.step_timeout);
   } catch (const runner::Unsupported&) {

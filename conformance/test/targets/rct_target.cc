@@ -115,9 +115,7 @@ void RctTarget::start_node(machine::Role role, const std::string& command,
   next_.reset();
   at_instant_ = 0;
   clock_.start();
-  Asked asked;
-  asked.command = command;
-  asked.closing = "ready";
+  Asked asked{.command = command, .closing = "ready"};
   if (wanted.empty()) {
     client_->ask(asked);
     return;
@@ -250,12 +248,11 @@ void RctTarget::ask_until(Ticks time) {
 }
 
 Ticks RctTarget::ask(std::string command, Ticks time, bool passes_time) {
-  Asked asked;
-  asked.command = std::move(command);
-  asked.from = passes_time ? now_ : time;
-  asked.to = time;
-  asked.passes_time = passes_time;
-  asked.real_time = client_->identity().real_time;
+  Asked asked{.command = std::move(command),
+              .from = passes_time ? now_ : time,
+              .to = time,
+              .passes_time = passes_time,
+              .real_time = client_->identity().real_time};
   const bool waits = asked.real_time && time > now_;
   const Answer answer = answer_to(asked, ms_of(waits ? time - now_ : 0));
   for (const Output& output : answer.outputs) {

@@ -194,9 +194,7 @@ const std::string& NodeNames::link(Link link) const {
 }
 
 trace::NodeHeader header_of(const machine::Config& config, std::string name) {
-  trace::NodeHeader node;
-  node.name = std::move(name);
-  node.role = static_cast<trace::Role>(config.role);
+  trace::NodeHeader node{.name = std::move(name), .role = static_cast<trace::Role>(config.role)};
   if (config.role != machine::Role::kBaseStation) node.id = config.id;
   if (config.role != machine::Role::kMote) node.island = config.island;
   node.iut = true;
@@ -324,8 +322,7 @@ Message from_notice(const machine::Notice& notice) {
 std::optional<machine::Call> to_call(const Concrete& message) {
   Reader in(message);
   if (!in.named(kCreateIn)) return read_as<machine::Call>(in, kCalls);
-  machine::CreateChannel out;
-  out.direction = machine::Direction::kIn;
+  machine::CreateChannel out{.direction = machine::Direction::kIn};
   pass(in, out);
   return out;
 }

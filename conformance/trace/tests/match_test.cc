@@ -165,9 +165,7 @@ TEST(Match, LineWithAddressesAndBytes) {
 
 TEST(Match, FaultsLookAtWhatTheyNameOnly) {
   const Concrete seen = decode(frame(14, "0007 01 0043 01"), LinkKind::kRadio);
-  Line line;
-  line.op = Op::kLost;
-  line.message = message("join_request(seq_num=7)");
+  Line line{.op = Op::kLost, .message = message("join_request(seq_num=7)")};
   Bindings bindings;
   EXPECT_TRUE(match(line, seen, bindings));
   line.op = Op::kEmits;

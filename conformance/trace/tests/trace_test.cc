@@ -1,6 +1,7 @@
 // Decoding and encoding of messages, messages of applications, and the lines of logs.
 #include "conformance/trace/trace.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <string>
@@ -13,7 +14,6 @@
 #include "conformance/trace/parse.h"
 #include "conformance/trace/print.h"
 #include "conformance/trace/tests/testing.h"
-#include "conformance/trace/value_text.h"
 
 namespace rubric::trace {
 namespace {
@@ -23,7 +23,7 @@ std::string shown(const AmFrame& one, LinkKind link) { return print(decode(one, 
 std::string encoded(std::string_view text, const Bindings& bindings = {}) {
   try {
     const AmFrame made = encode(message(text), bindings);
-    return std::to_string(made.type) + ' ' + hex_of(made.payload);
+    return fmt::format("{} {:02x}", made.type, fmt::join(made.payload, ""));
   } catch (const TraceError& error) {
     return std::to_string(error.place().column) + ": " + error.what();
   }

@@ -130,9 +130,7 @@ void load_profile(const std::string& file, Model& model, Diagnostics& diagnostic
 void load_profile_text(const std::string& file, const std::string& text, Model& model,
                        Diagnostics& diagnostics) {
   diagnostics.add_source(file, text);
-  Profile out;
-  out.file = file;
-  out.name = std::filesystem::path(file).stem().string();
+  Profile out{.name = std::filesystem::path(file).stem().string(), .file = file};
   check_id(diagnostics, {file, 1, 1}, out.name, "profile");
   const auto root = parse_yaml(file, text, diagnostics);
   if (!root) return;

@@ -128,8 +128,7 @@ std::unique_ptr<Switch> read_switch(const YamlInput& input, const YAML::Node& no
   const YamlMap entries(input, cases->value, "cases", std::span<const std::string_view>{});
   if (entries.entries().empty()) input.error(cases->value, "a switch without cases", "");
   for (const YamlEntry& entry : entries.entries()) {
-    SwitchCase found;
-    found.place = input.place(entry.key_node);
+    SwitchCase found{.place = input.place(entry.key_node)};
     const auto type = yaml_text(input, entry.value, "the type of a case");
     if (!type) continue;
     found.type_name = *type;
@@ -162,8 +161,7 @@ void read_type_of(const YamlInput& input, const YamlMap& map, const Spec& spec, 
 void read_valid(const YamlInput& input, const YamlMap& map, Field& field) {
   const YamlEntry* entry = map.find("valid");
   if (entry == nullptr) return;
-  Valid valid;
-  valid.place = input.place(entry->value);
+  Valid valid{.place = input.place(entry->value)};
   const auto add = [&](const YAML::Node& node) {
     if (auto expr = read_expr(input, node, "valid")) {
       valid.one_of_exprs.push_back(std::move(expr));
@@ -229,8 +227,7 @@ void read_contents(const YamlInput& input, const YamlMap& map, Field& field) {
   field.width_bytes = static_cast<int>(bytes.size());
   std::int64_t value = 0;
   for (const char c : bytes) value = value << 8 | static_cast<unsigned char>(c);
-  Valid valid;
-  valid.place = input.place(entry->value);
+  Valid valid{.place = input.place(entry->value)};
   valid.one_of.push_back(value);
   field.valid = std::move(valid);
 }
@@ -287,10 +284,9 @@ void read_unit(const YamlInput& input, const YamlMap& map, Field& field) {
   const YamlEntry* entry = map.find("-unit");
   if (entry == nullptr) return;
   const YamlMap unit(input, entry->value, "-unit", kUnitKeys);
-  Unit out;
-  out.symbol = unit.text("symbol").value_or("");
-  out.scale = read_real(input, unit, "scale", 1);
-  out.offset = read_real(input, unit, "offset", 0);
+  Unit out{.symbol = unit.text("symbol").value_or(""),
+           .scale = read_real(input, unit, "scale", 1),
+           .offset = read_real(input, unit, "offset", 0)};
   if (out.symbol.empty()) {
     input.error(entry->value, "a unit without symbol", "symbol: was expected");
   }
@@ -391,9 +387,8 @@ std::unique_ptr<Field> read_field(const YamlInput& input, const YAML::Node& node
 
 MaskBit read_mask_bit(const YamlInput& input, const YAML::Node& node) {
   const YamlMap map(input, node, "a bit of a mask", kBitKeys);
-  MaskBit bit;
-  bit.name = map.text("id").value_or("");
-  bit.unnamed = map.boolean("-unnamed").value_or(false);
+  MaskBit bit{.name = map.text("id").value_or(""),
+              .unnamed = map.boolean("-unnamed").value_or(false)};
   if (!map.has("id")) {
     input.error(node, "a bit without id", "id: was expected");
   } else {

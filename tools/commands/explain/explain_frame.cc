@@ -37,11 +37,9 @@ using ByteList = std::vector<std::uint8_t>;
 constexpr std::size_t kShownBytes = 8;
 
 std::string hex(Bytes bytes) {
-  std::string text;
-  for (std::size_t i = 0; i < std::min(bytes.size(), kShownBytes); ++i) {
-    text += fmt::format("{}{:02x}", i ? " " : "", bytes[i]);
-  }
-  return bytes.size() > kShownBytes ? text + " ..." : text;
+  const std::size_t shown = std::min(bytes.size(), kShownBytes);
+  return fmt::format("{:02x}{}", fmt::join(bytes.first(shown), " "),
+                     shown < bytes.size() ? " ..." : "");
 }
 
 std::string count_text(std::size_t bytes) {
@@ -260,8 +258,7 @@ ByteList without_flags(const ByteList& given) {
 }
 
 GivenFrame serial(const ByteList& given) {
-  GivenFrame frame;
-  frame.bytes = without_flags(given);
+  GivenFrame frame{.bytes = without_flags(given)};
   frame.what = "a serial frame, from its kind byte to its CRC";
   decode_serial_content(view(frame.bytes), frame.packet);
   return frame;
@@ -276,9 +273,7 @@ bool is_am(const ByteList& bytes) {
 }
 
 GivenFrame packet(const ByteList& given) {
-  GivenFrame frame;
-  frame.bytes = given;
-  frame.what = "a serial packet, from its dispatch byte on";
+  GivenFrame frame{.bytes = given, .what = "a serial packet, from its dispatch byte on"};
   const bool counted = given.size() > 1 && given[0] == given.size() - 1;
   if (!is_am(given) && counted && is_am(ByteList(given.begin() + 1, given.end()))) {
     frame.bytes.erase(frame.bytes.begin());
@@ -296,8 +291,7 @@ bool has_fcs(const ByteList& given) {
 }
 
 GivenFrame radio(const ByteList& given) {
-  GivenFrame frame;
-  frame.bytes = given;
+  GivenFrame frame{.bytes = given};
   const bool fcs = has_fcs(given);
   frame.what = fcs ? "an 802.15.4 frame with its FCS" : "an 802.15.4 frame without FCS";
   decode_radio_record(view(frame.bytes), fcs ? kLinkRadioFcs : kLinkRadioNoFcs, frame.packet);
@@ -317,8 +311,7 @@ bool begins_as_radio(const ByteList& given) {
 }
 
 GivenFrame bare(const ByteList& given) {
-  GivenFrame frame;
-  frame.bytes = given;
+  GivenFrame frame{.bytes = given};
   frame.packet.framing = Framing::kBare;
   frame.packet.bytes = view(frame.bytes);
   return frame;

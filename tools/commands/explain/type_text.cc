@@ -214,10 +214,8 @@ Operand combined(Operand a, Operand b, const Operator& with) {
   }
   if (a.precedence < with.precedence) a.text = '(' + a.text + ')';
   if (b.precedence <= with.precedence && b.precedence != kAtom) b.text = '(' + b.text + ')';
-  Operand result;
-  result.text = fmt::format("{} {} {}", a.text, with.text, b.text);
-  result.precedence = with.precedence;
-  return result;
+  return {.text = fmt::format("{} {} {}", a.text, with.text, b.text),
+          .precedence = with.precedence};
 }
 
 Operand operand(const ExprStep& step, const Type& type) {
@@ -455,9 +453,7 @@ bool same_carrier_way(const Reach& a, const Reach& b) {
 
 void add(const Protocol& protocol, const Type& parent, const Field& f, const Type& message,
          std::vector<Reach>& found) {
-  Reach reach;
-  reach.parent = &parent;
-  reach.field = &f;
+  Reach reach{.parent = &parent, .field = &f};
   if (!leads_to(f, message, reach)) return;
   reach.condition = expr_text(f.condition, parent);
   if (!reach.key.empty()) reach.carrier = carrier_of(protocol, parent);

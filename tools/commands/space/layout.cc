@@ -20,7 +20,6 @@
 #include "codec/reflect/encode.h"
 #include "conformance/machine/messages.h"
 #include "tools/commands/run/names.h"
-#include "tools/format/put.h"
 
 namespace rubric::space {
 namespace {
@@ -104,11 +103,7 @@ std::vector<std::uint8_t> bytes_at(const Json& json, const char* name, std::size
   return out;
 }
 
-string hex_of(Bytes bytes) {
-  string hex(2 * bytes.size(), '0');
-  format::put_hex(hex.data(), bytes);
-  return hex;
-}
+string hex_of(Bytes bytes) { return fmt::format("{:02x}", fmt::join(bytes, "")); }
 
 std::int64_t time_of(const string& text) {
   const std::string_view form = "0000-00-00T00:00:00.000Z";

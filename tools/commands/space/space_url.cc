@@ -11,9 +11,7 @@ std::unique_ptr<Space> open_mqtt(const std::string& url, const std::string& cred
                                  std::uint16_t island) {
   MqttSettings settings = parse_mqtt(url);
   add_credentials(credentials, settings);
-  Tuple will;
-  will.key = island_availability_key(island);
-  will.data = availability_data(false);
+  Tuple will{.key = island_availability_key(island), .data = availability_data(false)};
   return std::make_unique<MqttSpace>(settings, fmt::format("{}:null", island), will);
 }
 

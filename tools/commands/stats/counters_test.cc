@@ -22,10 +22,8 @@ class Feed {
               std::string_view interface_name = "radio") {
     std::vector<std::uint8_t> bytes;
     ASSERT_TRUE(reflect::parse_hex(hex, bytes));
-    Packet packet;
-    packet.framing = Framing::kSf;
-    packet.bytes = Bytes(bytes.data(), bytes.size());
-    packet.time_ns = time_ns;
+    Packet packet{
+        .framing = Framing::kSf, .bytes = Bytes(bytes.data(), bytes.size()), .time_ns = time_ns};
     decoder_.decode(packet, frame_);
     counters.take(frame_, {file, interface_name, index_, index_ + 1});
     ++index_;

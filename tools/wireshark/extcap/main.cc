@@ -264,12 +264,10 @@ std::string config(std::string_view reload) {
 // A capture that Wireshark reads while it grows.
 
 cli::InputOptions input_of(const CaptureOptions& options) {
-  cli::InputOptions input;
-  input.files = {options.source};
-  input.spec = options.spec;
-  input.listen_only = options.listen_only;
-  input.reconnect = options.reconnect;
-  return input;
+  return {.files = {options.source},
+          .spec = options.spec,
+          .listen_only = options.listen_only,
+          .reconnect = options.reconnect};
 }
 
 int usage(const std::string& what) {
@@ -349,8 +347,7 @@ int capture(const CaptureOptions& options) {
 
 // Returns what is wrong with a filter, or nothing. Throws cli::UsageError for an unknown `spec`.
 std::string filter_error(const std::string& filter, const std::string& spec) {
-  CaptureOptions options;
-  options.spec = spec;
+  CaptureOptions options{.spec = spec};
   if (filter.empty()) return {};
   try {
     format::Filter(filter, cli::chosen_protocol(input_of(options)));
@@ -376,9 +373,7 @@ bool flag(const CommandLine& line, std::string_view name) {
 }
 
 int start(const CommandLine& line) {
-  CaptureOptions options;
-  options.fifo = line.value("--fifo");
-  options.source = line.value("--other-source");
+  CaptureOptions options{.fifo = line.value("--fifo"), .source = line.value("--other-source")};
   if (options.source.empty()) options.source = line.value("--source");
   if (options.source.empty()) options.source = lines::default_address();
   options.filter = line.value("--extcap-capture-filter");

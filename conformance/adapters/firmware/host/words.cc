@@ -152,11 +152,7 @@ ByteVector bytes_of_hex(std::string_view hex) {
   return bytes;
 }
 
-std::string hex_of_bytes(Bytes bytes) {
-  std::string hex;
-  for (const std::uint8_t byte : bytes) hex += fmt::format("{:02x}", byte);
-  return hex;
-}
+std::string hex_of_bytes(Bytes bytes) { return fmt::format("{:02x}", fmt::join(bytes, "")); }
 
 ByteVector call_record(std::string_view text) {
   const std::size_t open = text.find('(');

@@ -117,9 +117,7 @@ std::string log_around(const CaseRun& one, const runner::Failure& failure, std::
 std::string chart_around(const CaseRun& one, const runner::Failure& failure, std::size_t indent,
                          std::size_t width) {
   const Stage stage(one);
-  report::Sequence sequence;
-  sequence.columns = stage.names();
-  sequence.number_title = "tick";
+  report::Sequence sequence{.columns = stage.names(), .number_title = "tick"};
   for (const Row& row : rows_around(one, failure)) {
     report::SequenceRow drawn;
     if (row.line) {

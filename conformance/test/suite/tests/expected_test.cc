@@ -16,19 +16,11 @@ constexpr const char* kEntry =
 
 runner::Failure failure(std::vector<std::string> rules, const char* text, bool weak = false,
                         bool forbidden = false) {
-  runner::Failure out;
-  out.requirements = std::move(rules);
-  out.text = text;
-  out.weak = weak;
-  out.forbidden = forbidden;
-  return out;
+  return {.requirements = std::move(rules), .weak = weak, .text = text, .forbidden = forbidden};
 }
 
 CaseRun failed(std::vector<runner::Failure> failures) {
-  CaseRun one;
-  one.name = "j4.accept";
-  one.file = "conformance/cases/j4.rtr";
-  one.profile = "paper";
+  CaseRun one{.name = "j4.accept", .file = "conformance/cases/j4.rtr", .profile = "paper"};
   one.result.verdict = failures.empty() ? CaseVerdict::kPass : CaseVerdict::kFail;
   one.result.failures = std::move(failures);
   return one;

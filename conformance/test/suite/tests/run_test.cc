@@ -35,16 +35,12 @@ const Cases& own() {
 }
 
 Plan plan(std::vector<std::string> globs = {}) {
-  Plan out;
-  out.cases = select(own(), {std::move(globs), {}, {}, {}});
-  return out;
+  return {.cases = select(own(), {std::move(globs), {}, {}, {}})};
 }
 
 // Reports joined (success) for the canary of motes, whatever happens.
 std::unique_ptr<runner::Target> parrot() {
-  runner::Output joined;
-  joined.time = 10;
-  joined.news = events::from_notice(machine::Joined{{10053, 5}, true});
+  runner::Output joined{.time = 10, .news = events::from_notice(machine::Joined{{10053, 5}, true})};
   return std::make_unique<testing::Parrot>(std::vector{joined});
 }
 

@@ -59,9 +59,7 @@ const Field* length_of(const Type& type, const Field& f) {
 bool is_constant(const Expr* expr) { return expr != nullptr && expr->op == ExprOp::kInt; }
 
 FieldLayout lay_out_field(const Type& type, const Field& f) {
-  FieldLayout out;
-  out.field = &f;
-  out.shape = shape_of(f);
+  FieldLayout out{.field = &f, .shape = shape_of(f)};
   if (out.shape == Shape::kNumbers) out.unit = static_cast<std::uint32_t>(f.width_bytes);
   if (out.shape == Shape::kStructs) out.unit = f.type->max_size;
   if (out.shape == Shape::kNumbers || out.shape == Shape::kStructs) {
@@ -220,8 +218,7 @@ std::string field_table(const Layout& layout, int columns, const SizeText& type_
 }
 
 Layout lay_out(const Type& type) {
-  Layout out;
-  out.type = &type;
+  Layout out{.type = &type};
   bool front = true;
   for (const auto& f : type.fields) {
     out.fields.push_back(lay_out_field(type, *f));

@@ -189,10 +189,7 @@ std::vector<Route> routes_of(const Spec& spec) {
   std::vector<Route> out;
   for (const auto& type : spec.types) {
     if (type->carrier.empty()) continue;
-    Route start;
-    start.carrier = type->carrier;
-    start.type = type.get();
-    start.room = type->max_size;
+    Route start{.carrier = type->carrier, .type = type.get(), .room = type->max_size};
     Walk(out).enter(*type, start);
   }
   return out;

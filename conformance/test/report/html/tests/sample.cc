@@ -52,10 +52,9 @@ void repeat_all(ImplementationRun& run) {
 
 // Returns a case of each verdict and expectation, with texts that try to break out of the page.
 ImplementationRun hostile(const ImplementationRun& good) {
-  ImplementationRun out;
-  out.target = std::string("javascript:alert(1)//") + kMarkup;
-  out.identity = {kMarkup, "../../..", {machine::Role::kMote}, false};
-  out.stderr_text = std::string("\xFF\xFE<!--<script>") + kMarkup;
+  ImplementationRun out{.target = std::string("javascript:alert(1)//") + kMarkup,
+                        .identity = {kMarkup, "../../..", {machine::Role::kMote}, false},
+                        .stderr_text = std::string("\xFF\xFE<!--<script>") + kMarkup};
   for (std::size_t i = 0; i < kVerdicts.size(); ++i) {
     CaseRun& one = out.cases.emplace_back(good.cases.at(i));
     one.result.verdict = kVerdicts[i];
@@ -89,8 +88,7 @@ EarlierRun earlier_of(const ImplementationRun& run) {
 
 int write(const std::string& folder) {
   const Cases cases = Cases::own();
-  Plan plan;
-  plan.cases = cases.all();
+  Plan plan{.cases = cases.all()};
   SuiteRun all;
   all.implementations.push_back(run_plan("good", testing::machine_target, plan));
   const mutants::StepMaker step = broken_step();
