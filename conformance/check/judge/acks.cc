@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "conformance/check/judge/peis_watch.h"
 #include "conformance/check/links.h"
 #include "conformance/machine/transport.h"
 
@@ -146,8 +145,6 @@ void Acks::sent(std::uint16_t node, const Observation& seen, const Net& ack,
   // Picks the best message with that number: one that waits for its ack.
   Arrived* best = nullptr;
   const auto rank = [](const Arrived& a) {
-    SerialJoined joined;  // It has the mote's address and the sink's number.
-    if (parse_serial_joined(a.net, joined)) return -1;
     if (a.forbidden != ReqId::kNone) return 0;
     const bool connless = a.net.trans_id == component::kConnless;
     if (a.net.reliable != 1 || !connless || a.net.broadcast()) return 1;
@@ -156,7 +153,8 @@ void Acks::sent(std::uint16_t node, const Observation& seen, const Net& ack,
   for (std::size_t i = 0; i < ring.size(); ++i) {
     Arrived& arrived = ring.newest(i);
     if (arrived.net.seq_num != acked || arrived.net.src != ack.dest) continue;
-    if (never_came(node, arrived)) continue;
+    SerialJoined joined;  // It has the mote's address and the sink's number.
+    if (parse_serial_joined(arrived.net, joined) || never_came(node, arrived)) continue;
     if (best == nullptr || rank(arrived) > rank(*best)) best = &arrived;
   }
   if (best == nullptr || rank(*best) < 3) {
@@ -238,13 +236,6 @@ void Acks::meant_ack(std::uint16_t node, const Net& ack) {
   }
 }
 
-// Returns whether messages of that island come to the node where no log and no tap is read.
-bool Acks::by_peis(std::uint16_t node, std::uint16_t island) const {
-  const Device& device = context_.device(node);
-  return device.role == machine::Role::kBaseStation && island != device.island &&
-         !logs_peis(context_.run, node);
-}
-
 void Acks::refuse(std::uint16_t node, const Observation& seen, const Net& ack, std::int32_t acked,
                   Arrived* best) {
   const std::int64_t now = seen.place.time_us;
@@ -260,7 +251,7 @@ void Acks::refuse(std::uint16_t node, const Observation& seen, const Net& ack, s
     const bool of_mote = ack.dest.pid == ack.src.pid && !machine::is_reserved(ack.dest.devid);
     if (context_.half_heard(node) && !of_mote) return context_.needs_host(node, seen.place);
     severity = context_.on_line(node, context_.without_ever(kNobody, now));
-    if (!of_mote && (!context_.has_lines(node) || by_peis(node, ack.dest.pid))) {
+    if (!of_mote && (!context_.has_lines(node) || context_.by_peis(node, ack.dest.pid))) {
       severity = Severity::kInconclusive;
     }
     meant_ack(node, ack);
@@ -348,7 +339,7 @@ void Acks::delivered(std::uint16_t node, const Observation& seen,
       break;
     }
     context_.report("T1-DELIVER"_rule,
-                    by_peis(node, received.src.pid) || !context_.has_lines(node)
+                    context_.by_peis(node, received.src.pid) || !context_.has_lines(node)
                         ? Severity::kInconclusive
                         : context_.without(kNobody, context_.run.start_us, seen.place.time_us),
                     seen.place, node,

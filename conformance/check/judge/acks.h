@@ -135,7 +135,6 @@ class Acks {
   bool delivered_before(std::uint16_t node, const Arrived& arrived);
   void judge_order(std::uint16_t node, const Observation& seen, const Arrived& arrived);
   void judge_ack_order(std::uint16_t node, const Observation& seen, const Arrived& acked);
-  bool by_peis(std::uint16_t node, std::uint16_t island) const;
   void refuse(std::uint16_t node, const Observation& seen, const Net& ack, std::int32_t acked,
               Arrived* best);
 

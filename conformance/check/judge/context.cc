@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "codec/reflect/requirements.h"
+#include "conformance/check/judge/peis_watch.h"
 
 namespace rubric::check {
 namespace {
@@ -210,6 +211,11 @@ bool Context::line_recorded(std::uint16_t sink, std::int64_t time_us) const {
   return run.past.until_us >= 0 || std::ranges::all_of(device(sink).taps, [&](std::uint32_t tap) {
            return tap_from_us[tap] <= time_us;
          });
+}
+
+bool Context::by_peis(std::uint16_t node, std::uint16_t island) const {
+  const Device& d = device(node);
+  return d.role == machine::Role::kBaseStation && island != d.island && !logs_peis(run, node);
 }
 
 void Context::needs_host(std::uint16_t sink, const Place& at) {

@@ -203,6 +203,8 @@ struct Context {
   /// Returns whether a sink's line has only the sink's own frames in the run, as if recorded from a
   /// line in use that others write to: whatever came down it is unknown.
   bool half_heard(std::uint16_t node) const;
+  /// Returns whether messages of that island come to the node where no log and no tap is read.
+  bool by_peis(std::uint16_t node, std::uint16_t island) const;
   /// Counts something that depends on what came down such a line; finish() reports all at once.
   void needs_host(std::uint16_t sink, const Place& at);
   /// Returns `severity`, or kInconclusive if frames are missing from the capture of the line of

@@ -209,15 +209,6 @@ TEST(Captures, AfterWrongSourcesTheRightOneIsRight) {
   EXPECT_EQ(found_in(script), "F:N1-SRC F:N1-SRC");
 }
 
-TEST(Captures, AnAckOfAReportIsOneOfAnUnreliableMessage) {
-  NetFields report = message({11, 2}, {11, kNullDevid}, 0);
-  Script script;
-  script.join(0, 11, 2, 100).down(100, report.ack(90)).confirm();
-  script.net(110, 1, 2, report.ack(90), 11);
-  EXPECT_NE(found_in(script).find("F:T2-UNRELIABLE"), std::string::npos) << found_in(script);
-  EXPECT_EQ(found_in(script).find("T2-CONTENT"), std::string::npos) << found_in(script);
-}
-
 TEST(Captures, WhatComesFromOtherIslandsIsSeenOnNoLine) {
   const auto acks = [](machine::Address of) {
     const NetFields asked = message(of, {11, kNullDevid}, 2464, 1);
