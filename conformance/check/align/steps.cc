@@ -66,6 +66,10 @@ void exchanges_of_net(const Observation& seen, std::vector<Exchange>& ends,
   if (!radio && !seen.to_mote) ends.emplace_back(Hop::kUp, net.addresses(), net.seq_num);
   const bool to_sink = seen.to_mote && net.dest.devid == machine::Profile{}.sink_id;
   const std::int32_t acked = net.is_ack() ? machine::acked_seq_num(net.body()) : -1;
+  // A node answers where it hears the message; elsewhere a sink has to pass on one or both.
+  const std::uint16_t by = acked >= 0 ? net.src.devid : net.dest.devid;
+  const bool pc = by == machine::kNullDevid;
+  if (radio ? pc : !pc && by != machine::Profile{}.sink_id) return;
   if (acked >= 0) {
     ends.emplace_back(Hop::kAck, addresses_of(net.dest, net.src),
                       static_cast<std::uint16_t>(acked));

@@ -1,8 +1,11 @@
 // One air or line that was recorded twice beside others gives the findings of one recording.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -155,6 +158,49 @@ TEST(AlignTwice, TwoSniffersThatBothMissFrames) {
       EXPECT_EQ(run.loose.size(), once.loose.size()) << name << ", " << shift_s << " s";
     }
   }
+}
+
+// Returns which rules the nodes have broken.
+std::set<std::string> blamed_in(const Report& report) {
+  std::set<std::string> out;
+  for (const Finding& finding : report.findings) {
+    if (finding.severity != Severity::kFail) continue;
+    out.insert(reflect::requirement(finding.requirement).id + (" " + finding.node));
+  }
+  return out;
+}
+
+// The same where their clocks differ: the frames that both heard are what they have in common, and
+// no line says anything more exactly.
+TEST(AlignTwice, TwoSniffersOnOtherClocksThatBothMissFrames) {
+  std::size_t lines = 0;
+  for (const char* name : {"a_join_data", "b_reliable", "c_two_islands", "f_synaptic"}) {
+    SerialClock clock;
+    clock.ahead_s = -777;
+    const Apart apart = take_apart(capture(name), clock);
+    clock.base_s += 2;
+    Part first{"radio", frames_of(apart.parts[0].bytes, [](auto i) { return i % 5 != 0; }), {0}};
+    Part second{"second", take_apart(capture(name), clock).parts[0].bytes, {0}};
+    second.bytes = frames_of(second.bytes, [](auto i) { return i % 5 != 1; });
+    std::vector<Part> parts = apart.parts;
+    parts[0] = first;
+    const std::set<std::string> blamed = blamed_in(judge(whole_run(apart), {}));
+    for (const bool line : {true, false}) {
+      if (!line) parts = {first};
+      lines += parts.size() - 1;
+      parts.insert(parts.begin() + 1, second);
+      check::Run run = put_together({parts, {}});
+      EXPECT_THAT(run.facts,
+                  ::testing::Contains(::testing::HasSubstr("second is aligned with radio "
+                                                           "by ")))
+          << name;
+      EXPECT_THAT(run.facts, ::testing::Contains(::testing::HasSubstr("2.000000 s ahead"))) << name;
+      std::string error;
+      EXPECT_TRUE(drop_duplicates(run, {}, error)) << name << ": " << error;
+      EXPECT_THAT(blamed, ::testing::IsSupersetOf(blamed_in(judge(run, {})))) << name;
+    }
+  }
+  EXPECT_EQ(lines, 4U);
 }
 
 // Only the line of one sink has no stamps; the other sink's line shows nothing of it.

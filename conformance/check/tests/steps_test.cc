@@ -141,6 +141,24 @@ TEST(Steps, OneForthDoesNotHideTheClockOfASink) {
   EXPECT_EQ(broken_in(judge(replies_around(-100'000, 1010), strict())), "");
 }
 
+// A base station's ack goes by way of its sink, as the message does: that takes longer than one
+// response, on the air alone as well.
+TEST(Steps, TheAckOfABaseStationIsNotLate) {
+  for (const bool whole : {true, false}) {
+    Script script = busy();
+    NetFields up;
+    up.dest = {11, machine::kNullDevid};
+    up.src = {11, 2};
+    up.reliable = 1;
+    up.seq_num = 50;
+    const NetFields ack = up.ack(7);
+    script.net(8000, 2, 1, up).up(8200, up.forwarded()).down(8350, ack).net(8500, 1, 2, ack, 11);
+    if (!whole) std::erase_if(script.run.seen, [](const Observation& one) { return one.tap != 0; });
+    for (int i = 0; !whole && i < 40; ++i) script.request(9000 + 600 * i, 9, 900);
+    EXPECT_TRUE(stepped_at(script, 0, 0).steps.empty()) << whole;
+  }
+}
+
 // A lawful mote repeats its ack_join for less than a second, and need not repeat it at all.
 TEST(Steps, ALateAckJoinBetweenOrdinarySilencesShowsNone) {
   Script script;
