@@ -141,9 +141,14 @@ struct ClockStep {
   std::uint32_t file = 0;
   std::uint64_t frame = 0;
   std::int64_t time_us = 0;          ///< Where the frame was put: as early as it can be.
-  std::int64_t later_us = kUnknown;  ///< It may be later by this; kUnknown: with all that follow.
+  std::int64_t later_us = kUnknown;  ///< It may be later by this; a step back leaves that open.
+  bool with_rest = true;             ///< All that follow are later with it.
 
-  bool alone() const { return later_us != kUnknown; }
+  bool alone() const { return !with_rest; }
+  /// Returns whether it changes what passed between two times.
+  bool is_between(std::int64_t from_us, std::int64_t to_us) const {
+    return time_us <= to_us && (time_us > from_us || (alone() && time_us == from_us));
+  }
 };
 
 /// Returns whether a clock stepped between two times, or the frame at one of them has a wrong
@@ -152,9 +157,21 @@ inline bool stepped(const std::vector<ClockStep>& steps, std::int64_t from_us, s
   const auto first = std::lower_bound(
       steps.begin(), steps.end(), from_us,
       [](const ClockStep& step, std::int64_t time_us) { return step.time_us < time_us; });
-  return std::any_of(first, steps.end(), [&](const ClockStep& step) {
-    return step.time_us <= to_us && (step.time_us > from_us || step.alone());
-  });
+  return std::any_of(first, steps.end(),
+                     [&](const ClockStep& step) { return step.is_between(from_us, to_us); });
+}
+
+/// Returns by how much the time that passed between two frames may differ from what their times
+/// say, as a clock stepped between them; kUnknown if nothing tells.
+inline std::int64_t doubt_us(const std::vector<ClockStep>& steps, std::int64_t from_us,
+                             std::int64_t to_us) {
+  std::int64_t sum_us = 0;
+  for (const ClockStep& step : steps) {
+    if (!step.is_between(from_us, to_us)) continue;
+    if (step.later_us == ClockStep::kUnknown) return ClockStep::kUnknown;
+    sum_us += step.later_us;
+  }
+  return sum_us;
 }
 
 /// What a run that is followed for long no longer holds (judge/follow.h). Its frames up to

@@ -121,7 +121,8 @@ class Alignment {
     return std::nullopt;
   }
 
-  // Settles the file that has most in common with a settled one.
+  // Settles the file that has most in common with a settled one. What two sniffers of one air heard
+  // says more than what waited for a line.
   bool settle_one() {
     std::optional<ClockFit> best;
     std::uint32_t best_a = 0;
@@ -131,17 +132,41 @@ class Alignment {
       for (std::uint32_t a = 0; a < files_.size(); ++a) {
         if (!files_[a].timed || !files_[a].settled || files_[a].stepped) continue;
         const ClockFit fit = fitted(a, b);
-        if (fit.clocks == Clocks::kUnsure || (best && best->frames >= fit.frames)) continue;
+        if (fit.clocks == Clocks::kUnsure) continue;
+        if (best && std::pair(best->same, best->frames) >= std::pair(fit.same, fit.frames))
+          continue;
         best = fit;
         best_a = a;
         best_b = b;
       }
     }
     if (!best) return false;
+    if (best->clocks == Clocks::kDiffer) {
+      move(best_a, best_b, *best);
+    } else if (best->same) {
+      bring_together(best_a, best_b, *best);
+    }
     files_[best_b].settled = true;
     files_[best_b].clock = files_[best_a].clock;
-    if (best->clocks == Clocks::kDiffer) move(best_a, best_b, *best);
     return true;
+  }
+
+  // Puts clocks that agree on that of the file with more frames, as each_once() takes it: what one
+  // file missed of an exchange is then in its place.
+  void bring_together(std::uint32_t a, std::uint32_t b, const ClockFit& fit) {
+    const auto on_clock = [&](std::uint32_t file) {
+      return files_[file].settled && files_[file].clock == files_[a].clock;
+    };
+    bool most = true;
+    for (std::uint32_t i = 0; i < files_.size(); ++i) {
+      most = most && !(on_clock(i) && sightings_[i].size() >= sightings_[b].size());
+    }
+    for (Observation& seen : run_.seen) {
+      std::int64_t& time_us = seen.place.time_us;
+      if (!seen.node.empty() || time_us == kNoStamp) continue;
+      if (most ? !on_clock(seen.place.file) : seen.place.file != b) continue;
+      time_us = most ? fit.moved_back(time_us) : fit.moved(time_us);
+    }
   }
 
   ClockFit fitted(std::uint32_t a, std::uint32_t b) {

@@ -17,8 +17,10 @@
 // line.
 //
 // Order of work: the first file with stamps keeps its clock. Then the file that has most in common
-// with a settled one joins it, until none can. The next file that is left begins a clock of its
-// own, and Run::facts says why. Clocks that differ by no more than `skew_us` are left as they are.
+// with a settled one joins it, those first that have the very same frames, until none can. The next
+// file that is left begins a clock of its own, and Run::facts says why. Clocks that differ by no
+// more than `skew_us` are left as they are, but for files with the same frames: these put them on
+// the clock of the file with more.
 //
 // A shift (align_clock.cc) is accepted only if all of these hold:
 // - At least kFramesMin pairs agree, they are more than half of all pairs, and no other shift has

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <tuple>
@@ -306,6 +307,7 @@ class Fit {
       if (steps(0, 0)) return unsure(kSteps);
       out_.clocks = Clocks::kAgree;
       out_.frames = points_.size();
+      fit_same();
       return out_;
     }
     if (points_.empty()) {
@@ -448,6 +450,20 @@ class Fit {
     return static_cast<double>(early) <= kTrimmed * static_cast<double>(near.size());
   }
 
+  // Says how far clocks that agree are apart by frames that are the same in both.
+  void fit_same() {
+    const std::int64_t most_us = options_.response_us + kSlackUs + options_.skew_us;
+    Points same;
+    std::ranges::copy_if(points_, std::back_inserter(same), [&](const Point& point) {
+      return point.lag_sign == 0 && std::abs(point.ahead_us) <= most_us;
+    });
+    out_.same = same.size() >= kFramesMin;
+    if (!out_.same) return;
+    out_.drift = drift_of(same, 0);
+    out_.offset_us = std::llround(ahead_of(same, options_));
+    out_.at_us = same.front().at_us;
+  }
+
   // Returns whether most repeating frames can be pairs of one clock.
   bool guesses_near_zero() const {
     std::map<std::uint32_t, bool> near;  // By frame index in the second file.
@@ -535,6 +551,7 @@ class Fit {
       return unsure("some of the frames that are in both would come before their causes");
     }
     out_.clocks = Clocks::kDiffer;
+    out_.same = rests(in_, 0).size() >= kFramesMin;
     out_.offset_us = base_us + std::llround(ahead_of(in_, options_));
     if (bounds.low && bounds.high) {
       out_.slack_us = std::max<std::int64_t>(0, std::llround(*bounds.high - *bounds.low));
@@ -559,6 +576,11 @@ class Fit {
 std::int64_t ClockFit::moved(std::int64_t time_us) const {
   const double since = static_cast<double>(time_us - at_us);
   return time_us - offset_us - std::llround(drift * since);
+}
+
+std::int64_t ClockFit::moved_back(std::int64_t time_us) const {
+  const double since = static_cast<double>(time_us + offset_us - at_us);
+  return time_us + offset_us + std::llround(drift * since);
 }
 
 ClockFit fit_clock(const Run& run, const CommonFrames& common, const AlignOptions& options) {

@@ -12,7 +12,8 @@ namespace rubric::check {
 
 /// The result of a comparison.
 enum class Clocks : std::uint8_t {
-  kAgree,   ///< The frames suggest one clock, or close enough for the rules.
+  kAgree,   ///< The frames suggest one clock, or close enough for the rules; `offset_us` is what
+            ///< frames that are the same in both say.
   kDiffer,  ///< By offset and drift.
   kUnsure,  ///< The frames do not say; `why` says why.
 };
@@ -24,6 +25,7 @@ struct ClockFit {
   double drift = 0;            ///< Grows by this in a second, in seconds.
   std::int64_t at_us = 0;      ///< On the second file's clock.
   std::size_t frames = 0;      ///< Pairs that agree.
+  bool same = false;           ///< Enough of them are the same frame, so that nothing waited.
   double spread_us = 0;        ///< Nine tenths of them are that close to the middle one.
 
   std::int64_t slack_us = 0;    ///< Stamps of the two files are that good after moved().
@@ -31,6 +33,8 @@ struct ClockFit {
 
   /// Returns a stamp of the second file on the first one's clock.
   std::int64_t moved(std::int64_t time_us) const;
+  /// Returns a stamp of the first file on the second one's clock.
+  std::int64_t moved_back(std::int64_t time_us) const;
 };
 
 /// Fits the clock of the file of `b` to that of the file of `a`. Both have stamps.

@@ -128,7 +128,8 @@ std::vector<Sighting> once(const Run& run, Group group) {
 
 class Pairing {
  public:
-  Pairing(const Run& run, CommonFrames& out) : run_(run), out_(out) {}
+  Pairing(const Run& run, Group a, Group b, CommonFrames& out)
+      : run_(run), of_a_(kinds(a)), of_b_(kinds(b)), out_(out) {}
 
   // Matches frames of one key; `sign` is Pair::lag_sign.
   void match(Common how, Group of_a, Group of_b, int sign) {
@@ -155,10 +156,10 @@ class Pairing {
     // Another place hears other frames, and a log is of some nodes.
     if (how == Common::kSame || how == Common::kLogged || how == Common::kPassed) return;
     for (std::size_t i = 0; i < a.size(); ++i) {
-      if (fit_a[i] == 0) out_.only_a.push_back(a[i].index);
+      if (fit_a[i] == 0 && goes_on(a[i], of_b_)) out_.only_a.push_back(a[i].index);
     }
     for (std::size_t j = 0; j < b.size(); ++j) {
-      if (fit_b[j] == 0) out_.only_b.push_back(b[j].index);
+      if (fit_b[j] == 0 && goes_on(b[j], of_a_)) out_.only_b.push_back(b[j].index);
     }
   }
 
@@ -174,6 +175,19 @@ class Pairing {
     }
   }
 
+  std::set<Kind> kinds(Group all) const {
+    std::set<Kind> out;
+    for (const Sighting& one : all) out.insert(run_.seen[one.index].kind);
+    return out;
+  }
+
+  // Returns whether a frame of the air may go on to a line of the other file, or back: one that has
+  // frames of these kinds.
+  bool goes_on(const Sighting& one, const std::set<Kind>& kinds) const {
+    const bool radio = run_.seen[one.index].kind == Kind::kRadio;
+    return kinds.contains(radio ? Kind::kSerial : Kind::kRadio);
+  }
+
   Pair pair_of(Common how, const Sighting& a, const Sighting& b, int sign) const {
     // Radio stamps mark the start of a frame, serial stamps its end.
     const Observation& cause = run_.seen[sign < 0 ? b.index : a.index];
@@ -182,6 +196,8 @@ class Pairing {
   }
 
   const Run& run_;
+  std::set<Kind> of_a_;
+  std::set<Kind> of_b_;
   CommonFrames& out_;
 };
 
@@ -225,7 +241,7 @@ CommonFrames common_frames(const Run& run, std::vector<Sighting>& a, std::vector
     }
   }
   CommonFrames out;
-  Pairing pairing(run, out);
+  Pairing pairing(run, a, b, out);
   std::size_t at_a = 0;
   std::size_t at_b = 0;
   while (at_a < a.size() || at_b < b.size()) {

@@ -66,6 +66,10 @@ void exchanges_of_net(const Observation& seen, std::vector<Exchange>& ends,
   if (!radio && !seen.to_mote) ends.emplace_back(Hop::kUp, net.addresses(), net.seq_num);
   const bool to_sink = seen.to_mote && net.dest.devid == machine::Profile{}.sink_id;
   const std::int32_t acked = net.is_ack() ? machine::acked_seq_num(net.body()) : -1;
+  // A node answers where it hears the message; elsewhere a sink has to pass on one or both.
+  const std::uint16_t by = acked >= 0 ? net.src.devid : net.dest.devid;
+  const bool pc = by == machine::kNullDevid;
+  if (radio ? pc : !pc && by != machine::Profile{}.sink_id) return;
   if (acked >= 0) {
     ends.emplace_back(Hop::kAck, addresses_of(net.dest, net.src),
                       static_cast<std::uint16_t>(acked));
@@ -316,9 +320,11 @@ class Recorded {
       Place& place = run_.seen[frames_[i]].place;
       std::int64_t time_us = stamps_[i] + shift_us;
       if (suspect_[i] == What::kStep) {
-        shift_us += last_us + kGoesOnUs - time_us;
+        const std::int64_t later_us = time_us - last_us - kGoesOnUs;
+        shift_us -= later_us;
         time_us = last_us + kGoesOnUs;
-        step(place, ClockStep::kUnknown);
+        // Where a clock was set forth less time passed than it says.
+        step(place, later_us < 0 ? ClockStep::kUnknown : later_us, true);
         const std::int64_t by_us = stamps_[i] - stamps_[i - 1];
         say(said, "the clock of " + name(i) + " steps " + (by_us < 0 ? "back" : "forth") + " by " +
                       seconds(std::abs(by_us)) + " at frame " + std::to_string(place.frame) +
@@ -329,7 +335,7 @@ class Recorded {
         const std::int64_t next_us = ends ? last_us : stamps_[i + 1] + shift_us;
         const std::int64_t off_us = time_us < last_us ? time_us - last_us : time_us - next_us;
         time_us = last_us;
-        step(place, std::max<std::int64_t>(0, next_us - last_us));
+        step(place, std::max<std::int64_t>(0, next_us - last_us), false);
         say(said, "the stamp of frame " + std::to_string(place.frame) + " of " + name(i) +
                       " is wrong by about " + seconds(std::abs(off_us)) +
                       "; it came between its neighbours");
@@ -355,8 +361,8 @@ class Recorded {
     }
   }
 
-  void step(const Place& place, std::int64_t later_us) {
-    run_.steps.push_back({place.file, place.frame, 0, later_us});
+  void step(const Place& place, std::int64_t later_us, bool with_rest) {
+    run_.steps.push_back({place.file, place.frame, 0, later_us, with_rest});
   }
   void say(std::size_t& said, std::string fact) {
     if (++said <= kFactsMax) run_.facts.push_back(std::move(fact));

@@ -31,7 +31,8 @@
 // longer by what may hide so (Run::slack_us).
 //
 // Why a doubt here blames nobody: judge_each_gap() judges the run as if the frames after each step
-// had come at once, and as if they had come much later. A failure remains if both have it.
+// had come at once, and as late as they can have come: after a step forth as the stamps say, since
+// less time passed than that, after one back much later. A failure remains if both have it.
 #pragma once
 
 #include "conformance/check/observation.h"

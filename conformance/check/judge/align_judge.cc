@@ -130,14 +130,15 @@ Report judge_each_order(const Run& run, const Options& options) {
 
 constexpr std::int64_t kMuchLaterUs = 7'200'000'000;
 
-// Returns the run with each step's frames much later, and frames with a wrong stamp as late as they
-// can be.
+// Returns the run with each step's frames as late as they can be, much later where nothing says how
+// late that is, and frames with a wrong stamp so, too.
 Run with_late_steps(const Run& run) {
   Run out = run;
   const auto later_us = [&](std::int64_t time_us) {
     std::int64_t sum_us = 0;
     for (const ClockStep& step : run.steps) {
-      if (!step.alone() && step.time_us <= time_us) sum_us += kMuchLaterUs;
+      if (step.alone() || step.time_us > time_us) continue;
+      sum_us += step.later_us == ClockStep::kUnknown ? kMuchLaterUs : step.later_us;
     }
     return sum_us;
   };
@@ -158,7 +159,7 @@ Run with_late_steps(const Run& run) {
 }
 
 // Judges a run in which the clock of a recorder stepped, as if the frames after each step had come
-// at once, and as if they had come much later. What only one of the two has is inconclusive.
+// at once, and as late as they can have come. What only one of the two has is inconclusive.
 Report judge_each_gap(const Run& run, const Options& options) {
   Report report = Judge(run, options).judge();
   Report late = Judge(with_late_steps(run), options).judge();

@@ -1,13 +1,20 @@
 // One air or line that was recorded twice beside others gives the findings of one recording.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
+#include "conformance/check/align/align.h"
 #include "conformance/check/input/duplicates.h"
+#include "conformance/check/message.h"
 #include "conformance/check/tests/align_testing.h"
+#include "conformance/check/tests/failures.h"
+#include "conformance/check/tests/testing.h"
 
 namespace rubric::check::align_twice_test {
 namespace {
@@ -148,6 +155,115 @@ TEST(AlignTwice, TwoSniffersThatBothMissFrames) {
       const check::Run run = put_together(twice);
       EXPECT_EQ(aligned_fact(run), aligned_fact(once)) << name << ", " << shift_s << " s";
       EXPECT_EQ(run.loose.size(), once.loose.size()) << name << ", " << shift_s << " s";
+    }
+  }
+}
+
+// Returns which rules the nodes have broken.
+std::set<std::string> blamed_in(const Report& report) {
+  std::set<std::string> out;
+  for (const Finding& finding : report.findings) {
+    if (finding.severity != Severity::kFail) continue;
+    out.insert(reflect::requirement(finding.requirement).id + (" " + finding.node));
+  }
+  return out;
+}
+
+// The same where their clocks differ: the frames that both heard are what they have in common, and
+// no line says anything more exactly.
+TEST(AlignTwice, TwoSniffersOnOtherClocksThatBothMissFrames) {
+  std::size_t lines = 0;
+  for (const char* name : {"a_join_data", "b_reliable", "c_two_islands", "f_synaptic"}) {
+    SerialClock clock;
+    clock.ahead_s = -777;
+    const Apart apart = take_apart(capture(name), clock);
+    clock.base_s += 2;
+    Part first{"radio", frames_of(apart.parts[0].bytes, [](auto i) { return i % 5 != 0; }), {0}};
+    Part second{"second", take_apart(capture(name), clock).parts[0].bytes, {0}};
+    second.bytes = frames_of(second.bytes, [](auto i) { return i % 5 != 1; });
+    std::vector<Part> parts = apart.parts;
+    parts[0] = first;
+    const std::set<std::string> blamed = blamed_in(judge(whole_run(apart), {}));
+    for (const bool line : {true, false}) {
+      if (!line) parts = {first};
+      lines += parts.size() - 1;
+      parts.insert(parts.begin() + 1, second);
+      check::Run run = put_together({parts, {}});
+      EXPECT_THAT(run.facts,
+                  ::testing::Contains(::testing::HasSubstr("second is aligned with radio "
+                                                           "by ")))
+          << name;
+      EXPECT_THAT(run.facts, ::testing::Contains(::testing::HasSubstr("2.000000 s ahead"))) << name;
+      std::string error;
+      EXPECT_TRUE(drop_duplicates(run, {}, error)) << name << ": " << error;
+      EXPECT_THAT(blamed, ::testing::IsSupersetOf(blamed_in(judge(run, {})))) << name;
+    }
+  }
+  EXPECT_EQ(lines, 4U);
+}
+
+// Two sniffers of one air, the second one's clock ahead by so much: the first misses frame `lost`,
+// the second some others.
+check::Run two_sniffers(const Script& script, std::uint64_t lost, std::int64_t ahead_us,
+                        bool second_first) {
+  check::Run run = script.run;
+  run.files = {"first", "second"};
+  run.taps = {{"radio", machine::Link::kRadio, false}, {"radio", machine::Link::kRadio, false}};
+  run.seen.clear();
+  for (const std::uint32_t file : {0U, 1U}) {
+    const bool ahead = (file == 1) != second_first;
+    for (Observation seen : script.run.seen) {
+      const std::uint64_t frame = seen.place.frame;
+      if (seen.tap != 0 || (ahead ? frame % 9 == 4 && frame != lost : frame == lost)) continue;
+      seen.place.file = seen.tap = file;
+      seen.place.time_us += 1'000'000 + (ahead ? ahead_us : 0);
+      run.seen.push_back(seen);
+    }
+  }
+  align(run, {});
+  merge(run);
+  std::string error;
+  EXPECT_TRUE(drop_duplicates(run, {}, error)) << error;
+  return run;
+}
+
+// Mote 3 asks, the sinks of islands 11 and 12 answer; it takes the offer of 12, which comes at
+// `offer_ms`, at 3015 ms.
+Script choice(double offer_ms) {
+  Script script;
+  script.join(100, 11, 2, 500);
+  script.join(300, 12, 5, 550, 2);
+  const auto send = [&](double ms, std::uint16_t island, std::uint16_t mote, int i) {
+    NetFields up;
+    up.dest = {island, machine::kNullDevid};
+    up.src = {island, mote};
+    up.seq_num = static_cast<std::uint16_t>(700 + i);
+    script.net(ms, mote, 1, up);
+  };
+  for (int i = 0; i < 8; ++i) send(600 + 250 * i, i % 2 == 0 ? 11 : 12, i % 2 == 0 ? 2 : 5, i);
+  script.request(3000, 3, 600);
+  const auto offer = [&] { script.reply(offer_ms, 12, 3, 600, 3008); };
+  if (offer_ms < 3015) offer();
+  script.reply(3010, 11, 3, 600, 3010).ack_join(3015, 12, 3, 600).link_ack();
+  if (offer_ms > 3015) offer();
+  for (int i = 0; i < 8; ++i) send(3600 + 250 * i, 12, 3, 20 + i);
+  return script;
+}
+
+// What only one of two sniffers heard of an exchange is in its place, however their clocks differ.
+TEST(AlignTwice, OnlyOneOfTwoSniffersHeardAnOffer) {
+  for (const std::int64_t ahead_us : {0, 8'000, -8'000, 45'000, -45'000}) {
+    for (const bool second_first : {false, true}) {
+      for (const double offer_ms : {3005.0, 3020.0}) {
+        const Script script = choice(offer_ms);
+        const auto offered = std::ranges::find_if(script.run.seen, [](const Observation& seen) {
+          return seen.frame.type == am::kJoinReply && seen.place.time_us > 3'000'000 &&
+                 seen.frame.payload[1] == 12;
+        });
+        const check::Run run = two_sniffers(script, offered->place.frame, ahead_us, second_first);
+        EXPECT_EQ(broken_in(judge(run, {})), offer_ms < 3015 ? "" : "J7-CHOICE")
+            << ahead_us << " us, offer at " << offer_ms << " ms";
+      }
     }
   }
 }

@@ -107,6 +107,49 @@ TEST(Steps, ALinkAckThatComesMuchLaterShowsOneForth) {
   }
 }
 
+// Two replies of a sink, between which a link ack comes so much later than it should.
+check::Run replies_around(double forth_ms, std::uint32_t second_clock_ms) {
+  Script script;
+  script.join(0, 11, 2, 100);
+  script.join(1000, 11, 3, 200);  // Says 1010.
+  send(script, 3, 19);
+  script.request(7700, 4, 300).reply(7710, 11, 4, 300, second_clock_ms);
+  script.ack_join(7720, 11, 4, 300).link_ack().joined(7740, 11, 4);
+  return stepped_at(script, 1021, forth_ms);
+}
+
+// A clock that was set forth shows more time than passed, but between two frames no less than none.
+TEST(Steps, OneForthDoesNotHideTheClockOfASink) {
+  for (const double forth_ms : {120.0, 400.0, 3000.0}) {
+    const check::Run right = replies_around(forth_ms, 7710);
+    ASSERT_EQ(right.steps.size(), 1U) << forth_ms;
+    EXPECT_EQ(broken_in(judge(right, strict())), "") << forth_ms;
+    EXPECT_EQ(broken_in(judge(replies_around(forth_ms, 1010), strict())), "J3-TIME") << forth_ms;
+    EXPECT_EQ(broken_in(judge(replies_around(forth_ms, 21'010), strict())), "J3-DRIFT (weak)")
+        << forth_ms;
+  }
+  // What passed in a step back may be anything.
+  EXPECT_EQ(broken_in(judge(replies_around(-100'000, 1010), strict())), "");
+}
+
+// A base station's ack goes by way of its sink, as the message does: that takes longer than one
+// response, on the air alone as well.
+TEST(Steps, TheAckOfABaseStationIsNotLate) {
+  for (const bool whole : {true, false}) {
+    Script script = busy();
+    NetFields up;
+    up.dest = {11, machine::kNullDevid};
+    up.src = {11, 2};
+    up.reliable = 1;
+    up.seq_num = 50;
+    const NetFields ack = up.ack(7);
+    script.net(8000, 2, 1, up).up(8200, up.forwarded()).down(8350, ack).net(8500, 1, 2, ack, 11);
+    if (!whole) std::erase_if(script.run.seen, [](const Observation& one) { return one.tap != 0; });
+    for (int i = 0; !whole && i < 40; ++i) script.request(9000 + 600 * i, 9, 900);
+    EXPECT_TRUE(stepped_at(script, 0, 0).steps.empty()) << whole;
+  }
+}
+
 // A lawful mote repeats its ack_join for less than a second, and need not repeat it at all.
 TEST(Steps, ALateAckJoinBetweenOrdinarySilencesShowsNone) {
   Script script;
