@@ -373,6 +373,48 @@ TEST(Captures, AMemberThatLostItsPowerIsNone) {
   EXPECT_EQ(found_in(script, false), "");  // Frames may have escaped, a join among them.
 }
 
+// Mote 2 joins, sends two messages, and loses its power; the island is set to another and back, so
+// that the sink forgets it. It joins anew from the DSN `first` on, and sends messages.
+Script reborn(std::uint8_t first, bool joins = true) {
+  Script script;
+  script.join(0, 11, 2, 100).join(500, 11, 3, 200);
+  for (std::uint16_t i = 0; i < 2; ++i)
+    forwards(script, 1000 + 300 * i, 2, i);  // Its DSNs are 0-3.
+  set_island(script, 2000, 12);
+  set_island(script, 2200, 11);
+  script.dsn[2] = first;
+  if (joins) script.join(4000, 11, 2, 300);
+  for (std::uint16_t i = 10; i < 30; ++i) forwards(script, 1000 + 400 * i, 2, i);
+  return script;
+}
+
+TEST(Captures, ARebootedMoteComesToItsOldDsnsAgain) {
+  for (int first = 250; first < 260; ++first) {
+    const auto dsn = static_cast<std::uint8_t>(first);
+    EXPECT_EQ(found_in(reborn(dsn)), "") << first;
+    EXPECT_EQ(found_in(reborn(dsn), false), "") << first;
+  }
+  for (const int first : {252, 253, 254, 255, 256, 257, 200}) {
+    const auto dsn = static_cast<std::uint8_t>(first);
+    EXPECT_EQ(found_in(reborn(dsn, false)), "F:J11-SEND") << first;
+  }
+}
+
+TEST(Captures, ARequestAfterARebootHasTheLastDsnBeforeIt) {
+  for (const int asked : {1, 2, 3}) {  // The first ones get no answer.
+    Script script;
+    script.join(0, 11, 2, 100).join(500, 11, 3, 200);
+    set_island(script, 2000, 12);
+    set_island(script, 2200, 11);
+    --script.dsn[2];
+    for (int i = 1; i < asked; ++i) script.request(4000 - 500.0 * i, 2, 300);
+    std::ranges::sort(script.run.seen, {}, [](const auto& seen) { return seen.place.time_us; });
+    script.join(4000, 11, 2, 300);
+    for (std::uint16_t i = 10; i < 20; ++i) forwards(script, 1000 + 400 * i, 2, i);
+    EXPECT_EQ(found_in(script, false).find("F:"), std::string::npos) << found_in(script, false);
+  }
+}
+
 TEST(Captures, ASinkThatGetsTheIslandOfAnotherKeepsItsLine) {
   Script script;
   script.dsn[12 * 65536U + 1] = 120;
