@@ -2,12 +2,12 @@
 
 #include <algorithm>
 
+#include "conformance/check/links.h"
 #include "conformance/check/message.h"
 
 namespace rubric::check {
 namespace {
 
-constexpr std::int64_t kLinkRepeatUs = 100'000;
 constexpr std::uint8_t kGapMax = 8;  // Beyond it a DSN does not follow the one before.
 constexpr std::size_t kHolesMax = 256;
 constexpr std::size_t kStreamsMax = 4096;

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "codec/reflect/requirements.h"
+#include "conformance/check/links.h"
 
 namespace rubric::check {
 namespace {
@@ -421,8 +422,7 @@ Severity Context::without(std::uint16_t cause, std::int64_t from_us, std::int64_
 
 Severity Context::without_copy(std::uint16_t sender, const Place& first,
                                std::int64_t now_us) const {
-  constexpr std::int64_t kCopyUs = 100'000;  // A link has repeated a frame by then.
-  const bool late = now_us > due_us(sender, first.time_us) + kCopyUs;
+  const bool late = now_us > due_us(sender, first.time_us) + kLinkRepeatUs;
   const Severity severity = without(sender, first.time_us, now_us);
   // A copy has the DSN of the first, so that none seems to be missing.
   const bool told = options.sniffer_complete || (sender != kNobody && device(sender).hearing);

@@ -226,9 +226,13 @@ void SinkJoins::request(std::uint16_t mote_device, const Observation& seen, cons
   }
   for (SinkWatch& sink : sinks_) {
     const Device& device = context_.device(sink.device);
-    const bool sure = surely_received_by == sink.device;
-    if (!hears(device, seen, sure)) continue;
+    const bool given = surely_received_by == sink.device;
+    if (!hears(device, seen, given)) continue;
     PairWatch& watch = pair(sink, am);
+    // It may be the link's copy of one that was answered before, and not captured.
+    const bool copy = !device.hearing && watch.answered && watch.answered_seq == request.seq_num &&
+                      seen.place.time_us - watch.answered_us <= kLinkRepeatUs;
+    const bool sure = given && !copy;
     doubt(sink.device, watch, seen.place);
     // With a full list it may be silent.
     const bool full = listed(sink) >= context_.profile(sink.device).members_max;
@@ -404,6 +408,7 @@ void SinkJoins::reply(std::uint16_t sink_device, const Observation& seen, const 
     keep(*sink, watch, next_, seen.place);
   }
   watch.answered = true;
+  watch.answered_us = seen.place.time_us;
   watch.cut_off = false;
   watch.answered_seq = reply.seq_num;
 }

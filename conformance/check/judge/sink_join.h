@@ -83,6 +83,7 @@ struct PairWatch {
   std::vector<SinkHypothesis> set;
   std::uint16_t answered_seq = 0;  ///< In the last reply.
   bool answered = false;
+  std::int64_t answered_us = 0;
   Place request;  ///< The last.
   std::uint16_t request_seq = 0;
   bool asked = false;

@@ -198,6 +198,45 @@ TEST(Captures, ACopyOfAFrameMayHaveEscaped) {
   EXPECT_EQ(found_in(script), "F:N6-ONCE");
 }
 
+// Mote 2 acks a message `copy_ms` before the link's copy of it, the first frame that is captured.
+Script acked_before(double copy_ms, std::uint16_t acked = 4) {
+  Script script;
+  script.join(0, 11, 2, 100);
+  for (std::uint16_t i = 1; i <= 4; ++i) {
+    const NetFields down = message({11, 1}, {11, 2}, i, 1);
+    NetFields ack = down.ack(static_cast<std::uint16_t>(50 + i));
+    if (i == 4) ack = message({11, 1}, {11, 2}, acked, 1).ack(54);
+    if (i == 4) script.net(4000 - copy_ms, 2, 1, ack);
+    script.radio(1000.0 * i, 1, 2, am::kNet, down.bytes(), 11, true).link_ack();
+    if (i < 4) script.net(1000.0 * i + 20, 2, 1, ack);
+  }
+  forwards(script, 4500, 2, 7);
+  return script;
+}
+
+TEST(Captures, ACopyComesAfterTheAckOfAFrameThatEscaped) {
+  EXPECT_EQ(found_in(acked_before(6), false), "I:T2-CONTENT");
+  EXPECT_EQ(found_in(acked_before(6)), "F:T2-CONTENT");
+  EXPECT_EQ(found_in(acked_before(300), false), "I:T2-CONTENT F:T2-ACK");
+  EXPECT_EQ(found_in(acked_before(6, 9), false), "I:T2-CONTENT F:T2-ACK");
+}
+
+TEST(Captures, ACopyComesAfterTheReplyToARequestThatEscaped) {
+  const auto answered = [](double copy_ms) {
+    Script script;
+    script.join(0, 11, 3, 50).reply(1000, 11, 2, 100, 1000);
+    Payload request;
+    put16(request, 100);
+    put(request, kDescriptor);
+    script.radio(1000 + copy_ms, 2, 1, am::kJoin, request, 0, true).link_ack();
+    if (copy_ms < 100) script.ack_join(1010, 11, 2, 100).link_ack().joined(1030, 11, 2);
+    script.join(2000, 11, 4, 60);
+    return found_in(script, false);
+  };
+  EXPECT_EQ(answered(3).find("F:"), std::string::npos) << answered(3);
+  EXPECT_NE(answered(300).find("F:J3-REPLY"), std::string::npos) << answered(300);
+}
+
 // Messages 1 to 3 to mote 2, all confirmed by its link; it acks those of `acked`.
 Script acks(const std::vector<std::uint16_t>& acked) {
   Script script;
