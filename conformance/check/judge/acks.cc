@@ -268,6 +268,9 @@ void Acks::refuse(std::uint16_t node, const Observation& seen, const Net& ack, s
   } else if (best->forbidden != ReqId::kNone) {
     rule = best->forbidden;
     if (best->weak) severity = Severity::kWeak;
+    // It may have joined that island while its frames were missed.
+    const bool joined = rule == "N5-FOREIGN"_rule && ack.src == best->net.dest;
+    if (joined) severity = context_.without(node, best->place.time_us, now);
     said.text = "It acks " + name_of(best->net) + ", which it should have " +
                 (rule == "N11-NBYTES"_rule ? "dropped." : "ignored.");
     said.expected = "No effect at this node.";

@@ -259,6 +259,33 @@ TEST(Captures, AMoteThatAckedBeforeOwesAnAck) {
   EXPECT_EQ(found_in(acks({2, 3})), "I:T2-ACK");  // Perhaps its application came later.
 }
 
+// Mote 2 of island 11 acks a message of island 12 for its devid, under an address of `island`; so
+// many of its frames before that escaped.
+Script acks_foreign(std::uint16_t island, std::uint8_t escaped) {
+  Script script;
+  script.join(0, 11, 2, 100).join(500, 12, 3, 200, 2);
+  forwards(script, 1000, 2, 6);
+  script.dsn[2] += escaped;
+  const NetFields foreign = message({12, 3}, {12, 2}, 5, 1);
+  NetFields ack = foreign.ack(50);
+  ack.src = {island, 2};
+  script.net(5000, 3, 2, foreign).net(5015, 2, 3, ack);
+  for (std::uint16_t i = 8; i < 11; ++i) {
+    script.net(5000 + 100.0 * i, 2, 1, message({island, 2}, {island, 1}, i));
+  }
+  return script;
+}
+
+TEST(Captures, AMoteMayHaveJoinedAnotherIslandUnseen) {
+  const auto has = [](const Script& script, const std::string& finding) {
+    return found_in(script, false).find(finding) != std::string::npos;
+  };
+  EXPECT_TRUE(has(acks_foreign(12, 90), "I:N5-FOREIGN"));
+  EXPECT_FALSE(has(acks_foreign(12, 90), "F:"));
+  EXPECT_TRUE(has(acks_foreign(12, 0), "F:N5-FOREIGN"));
+  EXPECT_TRUE(has(acks_foreign(11, 2), "F:N5-FOREIGN"));
+}
+
 TEST(Captures, AMoteThatAsksOnAfterAnOfferThatItHad) {
   Script script;
   script.join(0, 11, 3, 50).request(1000, 2, 100).reply(1010, 11, 2, 100, 1010);
