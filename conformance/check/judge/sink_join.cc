@@ -527,6 +527,7 @@ void SinkJoins::ack_join(std::uint16_t, const Observation& seen, const AckJoin& 
       watch.admitted_us = seen.place.time_us + air_us(seen);
     }
     watch.ignored_ack = admitted ? ReqId::kNone : ignored;
+    if (ack.dest.pid == sink.island) watch.own_ack_us = seen.place.time_us;
     const bool waits = sink.serial_off && !device.whole;
     if (sure && all_admit && device.shows_line() && !waits) sink.set_due(watch, true);
     keep(sink, watch, next_, seen.place);

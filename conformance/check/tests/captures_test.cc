@@ -415,6 +415,39 @@ TEST(Captures, ASinkThatSpeaksInTheNameOfAnotherOne) {
   EXPECT_EQ(of_two_sinks(radiates), "F:N7-CONTENT");
 }
 
+// Two motes with devid 9 ask at once; both sinks answer both. The first takes the offer of island
+// 12, and the second, if it `acks`, that of island 11; sink 12 announces its member.
+void namesakes(Script& script, bool acks, bool first = true) {
+  script.dsn[9] = 20;
+  script.dsn[65536U + 9] = 90;
+  script.request(2000, 9, 500).reply(2010, 12, 9, 500, 2010).reply(2013, 11, 9, 500, 2013);
+  script.mote_key = 1;
+  script.request(2019, 9, 900);
+  script.mote_key = 0;
+  if (first) script.ack_join(2021, 12, 9, 500).link_ack();
+  script.reply(2025, 12, 9, 900, 2025).reply(2027, 11, 9, 900, 2027);
+  script.mote_key = 1;
+  if (acks) script.ack_join(2038, 11, 9, 900).link_ack();
+  script.mote_key = 0;
+  script.joined(2050, 12, 9, 2);
+  if (acks) script.joined(2055, 11, 9, 1);
+  for (std::uint16_t i = 0; i < 4; ++i) {
+    const double ms = 2200 + 100.0 * i;
+    const NetFields one = message({12, 9}, {12, kNullDevid}, i);
+    const NetFields other = message({11, 9}, {11, kNullDevid}, i);
+    if (first) script.net(ms, 9, 1, one).up(ms + 12, one.forwarded(), 2);
+    if (acks) script.net(ms + 50, 9, 1, other, 1).up(ms + 62, other.forwarded(), 1);
+  }
+}
+
+TEST(Captures, TwoMotesWithOneDevidAskAtOnce) {
+  const auto found = [](bool first) {
+    return of_two_sinks([&](Script& script) { namesakes(script, true, first); });
+  };
+  EXPECT_EQ(found(true), "I:J6-SEQ");
+  EXPECT_NE(found(false).find("F:J6-ISLAND"), std::string::npos) << found(false);
+}
+
 TEST(Captures, AReportThatNamesAnIslandOfNobody) {
   Script script;
   script.request(0, 2, 100).reply(10, 267, 2, 100, 10).ack_join(20, 267, 2, 100).link_ack();
