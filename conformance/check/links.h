@@ -13,6 +13,9 @@ inline constexpr std::int64_t kAroundBytes = 19;
 /// The longest frame on the air: preamble, SFD and length before 127 bytes.
 inline constexpr std::int64_t kAirMaxUs = (6 + 127) * kRadioByteUs;
 
+/// Within this time the link may repeat a frame, with its DSN (decision 111).
+inline constexpr std::int64_t kLinkRepeatUs = 100'000;
+
 /// Returns how long a captured radio frame is on the air after its time, that is after its start.
 /// Its receivers have it then, not before, and their times count from there. 0 for all else: serial
 /// frames have the time of their end, and logs that of what the node did.

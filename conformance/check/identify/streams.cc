@@ -2,12 +2,12 @@
 
 #include <algorithm>
 
+#include "conformance/check/links.h"
 #include "conformance/check/message.h"
 
 namespace rubric::check {
 namespace {
 
-constexpr std::int64_t kLinkRepeatUs = 100'000;
 constexpr std::uint8_t kGapMax = 8;  // Beyond it a DSN does not follow the one before.
 constexpr std::size_t kHolesMax = 256;
 constexpr std::size_t kStreamsMax = 4096;
@@ -21,8 +21,10 @@ constexpr int kNearDsn = 3;
 constexpr int kDestIsland = 3;  // The sink of that island should send it on.
 constexpr int kSrcIsland = 1;
 constexpr int kMoteIsland = 4;
+constexpr int kAsked = 8;   // An ack_join has the number that the stream asked with.
 constexpr int kStray = -4;  // One frame, and then many of another stream: perhaps an old one again.
 constexpr std::uint32_t kStrayAfter = 16;
+constexpr std::uint64_t kLifeFrames = 3;  // So many that follow each other are no stray ones.
 constexpr std::uint16_t kBothLines = 0xFFFF;
 
 // Notes that frames between the stream's last one and that time were missed; `dsn`: only that one.
@@ -44,6 +46,13 @@ bool Stream::lacks(const Stream& other) const {
          });
 }
 
+bool Stream::renews(const Stream& other, bool even, bool request) const {
+  if (sink != other.sink || other.last >= first) return false;
+  if (request && asks != other.asks) return asks;  // A member asks no more.
+  const bool same = island == other.island && (island != kNoIsland || !request);
+  return same && (even || joins || frames >= kLifeFrames);
+}
+
 Streams::Streams(const Run& run, const Options& options)
     : run_(run),
       given_(options),
@@ -55,10 +64,13 @@ IslandHint Streams::hint_of(const machine::Frame& frame) const {
   IslandHint hint;
   Reply reply;
   Net net;
-  if (frame.type == am::kJoinReply && parse_reply(frame.payload, reply)) {
+  if (Request request; frame.type == am::kJoin && parse_request(frame.payload, request)) {
+    hint.join = request.seq_num;
+  } else if (frame.type == am::kJoinReply && parse_reply(frame.payload, reply)) {
     if (!machine::is_reserved(reply.island)) hint.strong = reply.island;
   } else if (AckJoin ack; frame.type == am::kAckJoin && parse_ack_join(frame.payload, ack)) {
     hint.mote = ack.src.pid;
+    hint.join = ack.seq_num;
   } else if (frame.type == am::kNet && parse_net(frame.payload, net)) {
     hint.mote = net.src.pid;
     // A message of another island's sink may be passed on; it looks like the sink's own.
@@ -84,6 +96,7 @@ int Streams::score(const Stream& stream, const Observation& seen, const IslandHi
   const auto ahead = static_cast<std::uint8_t>(seen.dsn - stream.dsn);
   if (ahead == 0 || ahead > kGapMax) return kNoMatch;
   int points = ahead == 1 ? kNextDsn : kNearDsn;
+  if (seen.frame.type == am::kAckJoin && hint.join == stream.join) points += kAsked;
   if (stream.island == kNoIsland) return points;
   // Motes of two islands may have the same id; but one mote may also change its island.
   if (!stream.sink) {
@@ -128,11 +141,14 @@ std::uint16_t Streams::assign(std::uint32_t index, bool& repeat) {
       return i;
     }
     int points = score(stream, seen, hint);
+    if (points == kNoMatch) continue;
+    const bool request = seen.frame.type == am::kJoin;
+    if (best != kLast && streams_[best].renews(stream, points == best_score, request)) continue;
     const bool stray =
         stream.frames == 1 && frames_of_[seen.frame.src] - stream.last_of_am > kStrayAfter;
-    if (points != kNoMatch && !stray) ++candidates;
-    if (points != kNoMatch && stray) points += kStray;
-    even = points == best_score && points != kNoMatch;
+    if (!stray) ++candidates;
+    if (stray) points += kStray;
+    if (points >= best_score) even = points == best_score;
     if (points <= best_score) continue;
     best = i;
     best_score = points;
@@ -164,7 +180,10 @@ void Streams::go_on(Stream& stream, std::uint32_t index, const IslandHint& hint)
   stream.last = index;
   stream.last_us = seen.place.time_us;
   stream.last_of_am = frames_of_[seen.frame.src];
-  if (seen.frame.type == am::kJoin) stream.asked = true;
+  stream.asks = seen.frame.type == am::kJoin;
+  stream.asked = stream.asked || stream.asks;
+  if (stream.asks) stream.join = hint.join;
+  if (seen.frame.type == am::kNet) stream.join = -1;
   if (!stream.sink && hint.mote != kNoIsland) stream.island = hint.mote;
   if (seen.frame.type == am::kJoinReply && !stream.asked) stream.sink = true;
   if (stream.sink) guess_island(stream, index, hint);
@@ -215,7 +234,8 @@ std::uint16_t Streams::open(std::uint32_t index, const IslandHint& hint) {
   const bool usual = stream.am == sink_am_ || stream.am == machine::Profile{}.sink_id;
   const bool named = said ? *said == machine::Role::kSink : usual;
   stream.sink = seen.frame.type == am::kJoinReply || (named && seen.frame.type != am::kJoin);
-  stream.joins = stream.asked = seen.frame.type == am::kJoin;
+  stream.joins = stream.asked = stream.asks = seen.frame.type == am::kJoin;
+  if (stream.joins) stream.join = hint.join;
   if (stream.sink) {
     guess_island(stream, index, hint);
   } else {

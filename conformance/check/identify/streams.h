@@ -19,6 +19,7 @@ struct IslandHint {
   std::uint16_t dest = kNoIsland;    ///< Destination of a message that is passed on.
   std::uint16_t mote = kNoIsland;    ///< Were it a mote's: its island.
   std::uint16_t line = kNoIsland;    ///< The serial line down which the same message came lately.
+  std::int32_t join = -1;            ///< The number in a join_request or an ack_join; -1: neither.
 };
 
 struct Stream {
@@ -27,6 +28,8 @@ struct Stream {
   bool sink = false;
   bool joins = false;       ///< Its first frame was a join_request.
   bool asked = false;       ///< It sent a join_request.
+  bool asks = false;        ///< Its last frame is one.
+  std::int32_t join = -1;   ///< The number in its join_request, until it sends a message.
   bool given = false;       ///< Its island is what the user says, so far.
   std::uint32_t plain = 0;  ///< The first observation that shows its island, + 1; 0: none.
   std::uint16_t plain_island = kNoIsland;  ///< There.
@@ -48,6 +51,10 @@ struct Stream {
   std::vector<Hole> holes;
   /// Returns whether this one frame of another stream is the one that is missing in this stream.
   bool lacks(const Stream& other) const;
+  /// Returns whether this is a new life of the sender of `other`, which was not heard since it
+  /// began: then a frame that could be of both is of this one. `even`: it fits both as well;
+  /// `request`: it is a join_request, which shows no island.
+  bool renews(const Stream& other, bool even, bool request) const;
 };
 
 /// Assigns frames to streams, one after the other.

@@ -30,7 +30,8 @@ Acks::Acks(Context& context, std::size_t devices)
       arrived_(devices),
       owed_(devices, 0),
       orders_(devices),
-      acked_apps_(devices) {}
+      acked_apps_(devices),
+      early_(devices) {}
 
 void Acks::begin_life(std::uint16_t node, std::int64_t since_us) {
   Ring<Arrived, kRoom>& ring = arrived_[node];
@@ -65,8 +66,13 @@ void Acks::arrived(std::uint16_t node, const Observation& seen, std::uint16_t se
   arrived.sure = arrival.sure;
   arrived.came = arrival.came;
   arrived.order = ++orders_[node].came;
-  if (arrived.must_ack && arrived.sure) ++owed_[node];
   const std::int64_t now = seen.place.time_us;
+  const Early& early = early_[node];
+  const bool copy = arrived.link == machine::Link::kRadio && early.to == net.src &&
+                    early.acked == net.seq_num && now - early.time_us <= kLinkRepeatUs;
+  arrived.acks = copy ? 1 : 0;
+  arrived.copies = copy ? 2 : 1;
+  if (arrived.must_ack && arrived.sure && arrived.acks == 0) ++owed_[node];
   ring.make_room([&](const Arrived& one) { return waits(node, one, now); },
                  [&](Arrived& one) {
                    missing_delivery(node, one, now);
@@ -255,6 +261,7 @@ void Acks::refuse(std::uint16_t node, const Observation& seen, const Net& ack, s
       severity = Severity::kInconclusive;
     }
     meant_ack(node, ack);
+    early_[node] = {ack.dest, static_cast<std::uint16_t>(acked), now};
     said.text = "An ack to " + text_of(ack.dest) + " of number " +
                 number(static_cast<std::uint64_t>(acked)) +
                 ", which no message that came to this node had.";
@@ -262,6 +269,9 @@ void Acks::refuse(std::uint16_t node, const Observation& seen, const Net& ack, s
   } else if (best->forbidden != ReqId::kNone) {
     rule = best->forbidden;
     if (best->weak) severity = Severity::kWeak;
+    // It may have joined that island while its frames were missed.
+    const bool joined = rule == "N5-FOREIGN"_rule && ack.src == best->net.dest;
+    if (joined) severity = context_.without(node, best->place.time_us, now);
     said.text = "It acks " + name_of(best->net) + ", which it should have " +
                 (rule == "N11-NBYTES"_rule ? "dropped." : "ignored.");
     said.expected = "No effect at this node.";

@@ -16,9 +16,10 @@
 //
 // Tolerance: an ack is due within the response time (decision 125) after the message's end; one
 // after the sender's timeout is weak. A repetition by the link is one reception or two, so one ack
-// or two are right (decision 111). A node may ack a message that it is free to ignore, and must if
-// it delivers it. Of what came by one line the acks that go by one line keep the order (decision
-// 125), unless the application was busy or the buffers were full.
+// or two are right (decision 111), and the first may come before it, where the frame that it
+// repeats escaped. A node may ack a message that it is free to ignore, and must if it delivers it.
+// Of what came by one line the acks that go by one line keep the order (decision 125), unless the
+// application was busy or the buffers were full.
 //
 // Cannot know: whether a message arrived that nothing proves to have arrived; whether an ack
 // escaped the sniffer; which of two messages with one source and number an ack means; whether a
@@ -148,6 +149,12 @@ class Acks {
   };
   std::vector<Order> orders_;
   std::vector<std::set<std::uint8_t>> acked_apps_;  ///< APPIDs of messages that a node acked.
+  struct Early {
+    machine::Address to;
+    std::uint16_t acked = 0;
+    std::int64_t time_us = INT64_MIN / 2;
+  };
+  std::vector<Early> early_;  ///< By node: its last ack of a message that was not captured before.
 };
 
 }  // namespace rubric::check

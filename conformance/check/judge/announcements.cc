@@ -196,6 +196,13 @@ void Announcements::refuse_report(SinkWatch& sink, PairWatch& watch, const Place
   } else if (watch.ignored_ack == "J6-SEQ"_rule || watch.ignored_ack == "J6-ISLAND"_rule) {
     rule = watch.ignored_ack;
     severity = context_.on_line(sink.device, severity);  // Its island may have been set.
+    // Of two motes with one devid it may have stored the number of each.
+    const std::uint16_t mote = context_.mote_of_am[mote_am];
+    const bool namesakes = mote != kNobody && context_.next_of_am[mote] != kNobody;
+    if (namesakes && at.time_us <= context_.due_us(sink.device, watch.own_ack_us)) {
+      rule = "J6-SEQ"_rule;
+      severity = std::min(severity, Severity::kInconclusive);
+    }
     said.text = what + " of mote " + number(mote_am) + ", whose only ack_join had " +
                 (rule == "J6-SEQ"_rule ? "a number that was not its request's."
                                        : "another island as its destination.");

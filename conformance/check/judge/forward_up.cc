@@ -98,10 +98,15 @@ void Forwarding::pass_up(Line& line, Passing& passing, const Observation& seen) 
     const bool format = passing.forbidden == "N11-NBYTES"_rule;
     Severity severity = passing.weak ? Severity::kWeak : Severity::kFail;
     if (!format) severity = context_.on_line(line.sink, severity);  // SET_ISLAND_ID may be missing.
-    if (!format && !line.island_sure) severity = std::min(severity, Severity::kInconclusive);
     const bool of_island = !format && passing.forbidden != "N10-OFF"_rule;
     if (of_island && context_.half_heard(line.sink)) {
       return context_.needs_host(line.sink, seen.place);
+    }
+    const bool lost =
+        passing.forbidden == "N9-SET"_rule &&  // Perhaps its power, and that island.
+        context_.may_have_restarted(line.sink, line.island_changed_us, seen.place.time_us);
+    if (!format && (!line.island_sure || lost)) {
+      severity = std::min(severity, Severity::kInconclusive);
     }
     context_.report(passing.forbidden, severity, seen.place, line.sink, std::move(said));
   } else {

@@ -144,13 +144,16 @@ bool SinkJoins::keeps_former(SinkWatch& sink, std::uint16_t shown, const Place& 
       at.time_us <= context_.due_us(sink.device, sink.island_set_us)) {
     return true;
   }
+  const bool behind = sink.behind_us > sink.island_set_us;
   const bool rebooted =
-      sink.behind_us > sink.island_set_us && !context_.device(sink.device).hearing;
+      !context_.device(sink.device).hearing &&
+      (behind || context_.may_have_restarted(sink.device, sink.island_set_us, at.time_us));
   if (sink.island_sure && !rebooted) return false;
   context_.report("N9-SET"_rule, Severity::kInconclusive, at, sink.device,
                   {"The sink acts for island " + number(shown) + " after it was told island " +
                        number(sink.island) +
-                       (rebooted ? "; its clock began anew, so that it may have lost its power."
+                       (rebooted ? std::string("; its ") + (behind ? "clock" : "DSNs") +
+                                       " began anew, so that it may have lost its power."
                                  : "; nothing proves that it heard that."),
                    "Island " + number(sink.island) + ", if it was told.",
                    {}});
@@ -226,9 +229,13 @@ void SinkJoins::request(std::uint16_t mote_device, const Observation& seen, cons
   }
   for (SinkWatch& sink : sinks_) {
     const Device& device = context_.device(sink.device);
-    const bool sure = surely_received_by == sink.device;
-    if (!hears(device, seen, sure)) continue;
+    const bool given = surely_received_by == sink.device;
+    if (!hears(device, seen, given)) continue;
     PairWatch& watch = pair(sink, am);
+    // It may be the link's copy of one that was answered before, and not captured.
+    const bool copy = !device.hearing && watch.answered && watch.answered_seq == request.seq_num &&
+                      seen.place.time_us - watch.answered_us <= kLinkRepeatUs;
+    const bool sure = given && !copy;
     doubt(sink.device, watch, seen.place);
     // With a full list it may be silent.
     const bool full = listed(sink) >= context_.profile(sink.device).members_max;
@@ -404,6 +411,7 @@ void SinkJoins::reply(std::uint16_t sink_device, const Observation& seen, const 
     keep(*sink, watch, next_, seen.place);
   }
   watch.answered = true;
+  watch.answered_us = seen.place.time_us;
   watch.cut_off = false;
   watch.answered_seq = reply.seq_num;
 }
@@ -519,6 +527,7 @@ void SinkJoins::ack_join(std::uint16_t, const Observation& seen, const AckJoin& 
       watch.admitted_us = seen.place.time_us + air_us(seen);
     }
     watch.ignored_ack = admitted ? ReqId::kNone : ignored;
+    if (ack.dest.pid == sink.island) watch.own_ack_us = seen.place.time_us;
     const bool waits = sink.serial_off && !device.whole;
     if (sure && all_admit && device.shows_line() && !waits) sink.set_due(watch, true);
     keep(sink, watch, next_, seen.place);

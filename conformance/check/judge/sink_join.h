@@ -83,6 +83,7 @@ struct PairWatch {
   std::vector<SinkHypothesis> set;
   std::uint16_t answered_seq = 0;  ///< In the last reply.
   bool answered = false;
+  std::int64_t answered_us = 0;
   Place request;  ///< The last.
   std::uint16_t request_seq = 0;
   bool asked = false;
@@ -90,9 +91,10 @@ struct PairWatch {
   Place admitted;  ///< The last one that may have made it a member.
   /// When it was reported before its ack_join was seen, by the skew of the taps.
   std::int64_t ahead_us = INT64_MIN / 2;
-  std::int64_t comes_us = -1;        ///< When a report that is late comes.
-  std::int64_t admitted_us = -1;     ///< When the sink has that one whole.
-  ReqId ignored_ack = ReqId::kNone;  ///< Why the last one must have been ignored.
+  std::int64_t comes_us = -1;               ///< When a report that is late comes.
+  std::int64_t admitted_us = -1;            ///< When the sink has that one whole.
+  ReqId ignored_ack = ReqId::kNone;         ///< Why the last one must have been ignored.
+  std::int64_t own_ack_us = INT64_MIN / 2;  ///< Of the last one for the sink's island.
   bool report_due = false;      ///< Surely owed since `admitted`, and not yet complained about.
   bool request_listed = false;  ///< The last request surely came while it was listed.
   bool cut_off = false;         ///< It was listed when the sink's island became another.

@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "codec/reflect/requirements.h"
 #include "conformance/check/observation.h"
 #include "conformance/check/tests/testing.h"
 
@@ -17,20 +16,6 @@ namespace {
 using machine::kNullDevid;
 
 constexpr auto kSetIsland = static_cast<std::uint8_t>(rubicon::CommandCode::kSetIslandId);
-
-// Returns the rules of all but notes, each with the letter of its severity: "F:N9-SET I:J5-STOP".
-std::string found_in(const Script& script, bool complete = true) {
-  Options options{.sniffer_complete = complete, .start_cold = complete};
-  std::string out;
-  for (const Finding& finding : judge(script.run, options).findings) {
-    if (finding.severity == Severity::kNote) continue;
-    const char* const id = reflect::requirement(finding.requirement).id;
-    out += out.empty() ? "" : " ";
-    out += "NWSIF"[static_cast<std::size_t>(finding.severity)];
-    out += ":" + std::string(id);
-  }
-  return out;
-}
 
 void forwards(Script& script, double ms, std::uint16_t mote, std::uint16_t seq_num) {
   script.net(ms, mote, 1, update(mote, seq_num)).up(ms + 12, update(mote, seq_num).forwarded());
@@ -83,6 +68,31 @@ TEST(Captures, ASinkThatLostItsPowerHasItsFirstIsland) {
   EXPECT_EQ(found_in(moved(1500, true, 11, 5)), "I:J3-DRIFT I:N9-SET");
 }
 
+TEST(Captures, ASinkThatLostItsPowerForwardsForItsFirstIsland) {
+  const auto found = [](std::uint8_t dsn, int frames) {
+    Script script;
+    script.join(0, 11, 2, 100);
+    script.net(500, 2, 1, message({11, 2}, {11, 1}, 5, 1));
+    script.net(510, 1, 2, message({11, 2}, {11, 1}, 5, 1).ack(30), 11);
+    set_island(script, 1500, 13);
+    forwards(script, 3000, 2, 7);
+    script.dsn[11 * 65536U + 1] += dsn;
+    for (int i = 0; i < frames; ++i) {
+      script.net(5000 + 100.0 * i, 1, machine::kAmBroadcast,
+                 message({11, 1}, {11, machine::kBroadcastDevid}, static_cast<std::uint16_t>(i)),
+                 11);
+    }
+    return found_in(script, false);
+  };
+  for (const int frames : {0, 1, 3}) {
+    EXPECT_NE(found(0, frames).find("F:N9-SET"), std::string::npos) << found(0, frames);
+  }
+  for (const int frames : {1, 2, 3, 5}) {  // Its DSNs begin anew.
+    EXPECT_EQ(found(100, frames).substr(0, 8), "I:N9-SET") << frames;
+    EXPECT_EQ(found(100, frames).find("F:"), std::string::npos) << found(100, frames);
+  }
+}
+
 TEST(Captures, WhatWasUnderWayShowsTheFormerIsland) {
   EXPECT_EQ(found_in(moved(3005, true, 11)), "F:N9-SET");  // Its ack_join came after.
   Script script;
@@ -132,46 +142,6 @@ TEST(Captures, AfterAJoinRequestNothingIsAwaited) {
   EXPECT_NE(found_in(again).find("F:T3-RESEND"), std::string::npos) << found_in(again);
 }
 
-TEST(Captures, AnAckOnItsWayEndsNoWait) {
-  const auto again = [](bool relayed, bool link_ack) {
-    const NetFields asked = message({11, 2}, {11, kNullDevid}, 700, 1);
-    Script script;
-    script.join(0, 11, 2, 100);
-    script.net(500, 2, 1, asked).up(512, asked.forwarded()).down(540, asked.ack(40)).confirm();
-    if (relayed) script.net(560, 1, 2, asked.ack(40), 11);
-    if (link_ack) script.link_ack();
-    script.net(900, 2, 1, asked);
-    if (!relayed) script.net(1000, 1, 2, asked.ack(40), 11);
-    script.up(1012, asked.forwarded());
-    return found_in(script);
-  };
-  EXPECT_NE(again(false, false).find("F:T3-RESEND"), std::string::npos) << again(false, false);
-  EXPECT_NE(again(true, false).find("I:T3-RESEND"), std::string::npos) << "It may be lost.";
-  EXPECT_EQ(again(true, true).find("T3-RESEND"), std::string::npos) << again(true, true);
-}
-
-TEST(Captures, AMemberMaySendBeforeItsAckJoinHasLeft) {
-  const auto sends = [](bool acks) {
-    Script script;
-    script.request(0, 2, 100).reply(10, 11, 2, 100, 10);
-    script.net(15, 2, 1, update(2, 7)).up(27, update(2, 7).forwarded());
-    if (acks) script.ack_join(35, 11, 2, 100).link_ack().joined(60, 11, 2);
-    return found_in(script);
-  };
-  EXPECT_EQ(sends(true), "");
-  EXPECT_NE(sends(false).find("F:J4-ACK"), std::string::npos) << sends(false);
-}
-
-TEST(Captures, AHostThatNobodyHearsMaySetTheIsland) {
-  Script script;  // Of the line only what the sink sends is captured.
-  script.join(0, 11, 2, 100).join(2000, 30, 3, 200);
-  script.net(3000, 3, 1, message({30, 3}, {30, kNullDevid}, 7));
-  script.up(3012, message({30, 3}, {30, kNullDevid}, 7).forwarded());
-  EXPECT_EQ(found_in(script), "I:");
-  script.down(4000, message({30, kNullDevid}, {30, 3}, 9));
-  EXPECT_NE(found_in(script).find("F:"), std::string::npos) << found_in(script);
-}
-
 TEST(Captures, ALineGoesOnInTheNextFile) {
   Script script;
   script.join(0, 11, 2, 100).net(1000, 2, 1, message({11, 2}, {12, 5}, 7));
@@ -191,52 +161,6 @@ TEST(Captures, ALineGoesOnInTheNextFile) {
   };
   EXPECT_EQ(rotated("serial:1"), "");
   EXPECT_NE(rotated("another"), "");
-}
-
-TEST(Captures, AfterWrongSourcesTheRightOneIsRight) {
-  Script script;
-  script.join(0, 11, 2, 100);
-  const auto sends = [&](double ms, std::uint16_t devid, std::uint16_t seq_num) {
-    const NetFields net = message({11, devid}, {11, kNullDevid}, seq_num);
-    script.net(ms, 2, 1, net).up(ms + 12, net.forwarded());
-  };
-  for (std::uint16_t i = 0; i < 3; ++i) sends(1000 + 500 * i, 79, 7 + i);
-  EXPECT_EQ(found_in(script), "F:N1-SRC");
-  sends(3000, 2, 10);
-  sends(3500, 2, 11);
-  EXPECT_EQ(found_in(script), "F:N1-SRC");
-  sends(4000, 79, 12);
-  EXPECT_EQ(found_in(script), "F:N1-SRC F:N1-SRC");
-}
-
-TEST(Captures, WhatComesFromOtherIslandsIsSeenOnNoLine) {
-  const auto acks = [](machine::Address of) {
-    const NetFields asked = message(of, {11, kNullDevid}, 2464, 1);
-    Script script;
-    script.join(0, 11, 2, 100).down(100, asked.ack(90)).confirm();
-    return found_in(script).find("F:T2-CONTENT") != std::string::npos;
-  };
-  EXPECT_FALSE(acks({12, 8}));
-  EXPECT_TRUE(acks({11, 2}));
-}
-
-TEST(Captures, ABufferIsNotFullOfWhatHasLeft) {
-  const auto loses = [](double forward_ms) {  // A message each 60 ms; the fifth is lost.
-    Script script;
-    script.join(0, 11, 2, 100);
-    for (std::uint16_t i = 0; i < 16; ++i) {
-      const double ms = 1000 + 60 * i;
-      const NetFields net = update(2, 7 + i);
-      script.net(ms, 2, 1, net).link_ack();
-      if (i != 4) script.up(ms + forward_ms, net.forwarded());
-    }
-    std::ranges::stable_sort(script.run.seen, {},
-                             [](const auto& one) { return one.place.time_us; });
-    for (std::size_t i = 0; i < script.run.seen.size(); ++i) script.run.seen[i].place.frame = i + 1;
-    return found_in(script).substr(0, 12);
-  };
-  EXPECT_EQ(loses(12), "F:N6-FORWARD");
-  EXPECT_EQ(loses(240), "I:N6-FORWARD") << "Four were waiting.";
 }
 
 TEST(Captures, AFrameToTheWrongAddressIsItsSendersFault) {
@@ -292,6 +216,45 @@ TEST(Captures, ACopyOfAFrameMayHaveEscaped) {
   EXPECT_EQ(found_in(script), "F:N6-ONCE");
 }
 
+// Mote 2 acks a message `copy_ms` before the link's copy of it, the first frame that is captured.
+Script acked_before(double copy_ms, std::uint16_t acked = 4) {
+  Script script;
+  script.join(0, 11, 2, 100);
+  for (std::uint16_t i = 1; i <= 4; ++i) {
+    const NetFields down = message({11, 1}, {11, 2}, i, 1);
+    NetFields ack = down.ack(static_cast<std::uint16_t>(50 + i));
+    if (i == 4) ack = message({11, 1}, {11, 2}, acked, 1).ack(54);
+    if (i == 4) script.net(4000 - copy_ms, 2, 1, ack);
+    script.radio(1000.0 * i, 1, 2, am::kNet, down.bytes(), 11, true).link_ack();
+    if (i < 4) script.net(1000.0 * i + 20, 2, 1, ack);
+  }
+  forwards(script, 4500, 2, 7);
+  return script;
+}
+
+TEST(Captures, ACopyComesAfterTheAckOfAFrameThatEscaped) {
+  EXPECT_EQ(found_in(acked_before(6), false), "I:T2-CONTENT");
+  EXPECT_EQ(found_in(acked_before(6)), "F:T2-CONTENT");
+  EXPECT_EQ(found_in(acked_before(300), false), "I:T2-CONTENT F:T2-ACK");
+  EXPECT_EQ(found_in(acked_before(6, 9), false), "I:T2-CONTENT F:T2-ACK");
+}
+
+TEST(Captures, ACopyComesAfterTheReplyToARequestThatEscaped) {
+  const auto answered = [](double copy_ms) {
+    Script script;
+    script.join(0, 11, 3, 50).reply(1000, 11, 2, 100, 1000);
+    Payload request;
+    put16(request, 100);
+    put(request, kDescriptor);
+    script.radio(1000 + copy_ms, 2, 1, am::kJoin, request, 0, true).link_ack();
+    if (copy_ms < 100) script.ack_join(1010, 11, 2, 100).link_ack().joined(1030, 11, 2);
+    script.join(2000, 11, 4, 60);
+    return found_in(script, false);
+  };
+  EXPECT_EQ(answered(3).find("F:"), std::string::npos) << answered(3);
+  EXPECT_NE(answered(300).find("F:J3-REPLY"), std::string::npos) << answered(300);
+}
+
 // Messages 1 to 3 to mote 2, all confirmed by its link; it acks those of `acked`.
 Script acks(const std::vector<std::uint16_t>& acked) {
   Script script;
@@ -312,6 +275,33 @@ TEST(Captures, AMoteThatAckedBeforeOwesAnAck) {
   EXPECT_EQ(found_in(acks({1, 2, 3})), "");
   EXPECT_EQ(found_in(acks({1, 3})), "F:T2-ACK");
   EXPECT_EQ(found_in(acks({2, 3})), "I:T2-ACK");  // Perhaps its application came later.
+}
+
+// Mote 2 of island 11 acks a message of island 12 for its devid, under an address of `island`; so
+// many of its frames before that escaped.
+Script acks_foreign(std::uint16_t island, std::uint8_t escaped) {
+  Script script;
+  script.join(0, 11, 2, 100).join(500, 12, 3, 200, 2);
+  forwards(script, 1000, 2, 6);
+  script.dsn[2] += escaped;
+  const NetFields foreign = message({12, 3}, {12, 2}, 5, 1);
+  NetFields ack = foreign.ack(50);
+  ack.src = {island, 2};
+  script.net(5000, 3, 2, foreign).net(5015, 2, 3, ack);
+  for (std::uint16_t i = 8; i < 11; ++i) {
+    script.net(5000 + 100.0 * i, 2, 1, message({island, 2}, {island, 1}, i));
+  }
+  return script;
+}
+
+TEST(Captures, AMoteMayHaveJoinedAnotherIslandUnseen) {
+  const auto has = [](const Script& script, const std::string& finding) {
+    return found_in(script, false).find(finding) != std::string::npos;
+  };
+  EXPECT_TRUE(has(acks_foreign(12, 90), "I:N5-FOREIGN"));
+  EXPECT_FALSE(has(acks_foreign(12, 90), "F:"));
+  EXPECT_TRUE(has(acks_foreign(12, 0), "F:N5-FOREIGN"));
+  EXPECT_TRUE(has(acks_foreign(11, 2), "F:N5-FOREIGN"));
 }
 
 TEST(Captures, AMoteThatAsksOnAfterAnOfferThatItHad) {
@@ -418,6 +408,39 @@ TEST(Captures, ASinkThatSpeaksInTheNameOfAnotherOne) {
   EXPECT_EQ(of_two_sinks(radiates), "F:N7-CONTENT");
 }
 
+// Two motes with devid 9 ask at once; both sinks answer both. The first takes the offer of island
+// 12, and the second, if it `acks`, that of island 11; sink 12 announces its member.
+void namesakes(Script& script, bool acks, bool first = true) {
+  script.dsn[9] = 20;
+  script.dsn[65536U + 9] = 90;
+  script.request(2000, 9, 500).reply(2010, 12, 9, 500, 2010).reply(2013, 11, 9, 500, 2013);
+  script.mote_key = 1;
+  script.request(2019, 9, 900);
+  script.mote_key = 0;
+  if (first) script.ack_join(2021, 12, 9, 500).link_ack();
+  script.reply(2025, 12, 9, 900, 2025).reply(2027, 11, 9, 900, 2027);
+  script.mote_key = 1;
+  if (acks) script.ack_join(2038, 11, 9, 900).link_ack();
+  script.mote_key = 0;
+  script.joined(2050, 12, 9, 2);
+  if (acks) script.joined(2055, 11, 9, 1);
+  for (std::uint16_t i = 0; i < 4; ++i) {
+    const double ms = 2200 + 100.0 * i;
+    const NetFields one = message({12, 9}, {12, kNullDevid}, i);
+    const NetFields other = message({11, 9}, {11, kNullDevid}, i);
+    if (first) script.net(ms, 9, 1, one).up(ms + 12, one.forwarded(), 2);
+    if (acks) script.net(ms + 50, 9, 1, other, 1).up(ms + 62, other.forwarded(), 1);
+  }
+}
+
+TEST(Captures, TwoMotesWithOneDevidAskAtOnce) {
+  const auto found = [](bool first) {
+    return of_two_sinks([&](Script& script) { namesakes(script, true, first); });
+  };
+  EXPECT_EQ(found(true), "I:J6-SEQ");
+  EXPECT_NE(found(false).find("F:J6-ISLAND"), std::string::npos) << found(false);
+}
+
 TEST(Captures, AReportThatNamesAnIslandOfNobody) {
   Script script;
   script.request(0, 2, 100).reply(10, 267, 2, 100, 10).ack_join(20, 267, 2, 100).link_ack();
@@ -465,6 +488,48 @@ TEST(Captures, AMemberThatLostItsPowerIsNone) {
   for (std::uint16_t i = 0; i < 3; ++i) forwards(script, 2000 + 500 * i, 2, i);
   EXPECT_EQ(found_in(script), "F:J11-SEND");
   EXPECT_EQ(found_in(script, false), "");  // Frames may have escaped, a join among them.
+}
+
+// Mote 2 joins, sends two messages, and loses its power; the island is set to another and back, so
+// that the sink forgets it. It joins anew from the DSN `first` on, and sends messages.
+Script reborn(std::uint8_t first, bool joins = true) {
+  Script script;
+  script.join(0, 11, 2, 100).join(500, 11, 3, 200);
+  for (std::uint16_t i = 0; i < 2; ++i)
+    forwards(script, 1000 + 300 * i, 2, i);  // Its DSNs are 0-3.
+  set_island(script, 2000, 12);
+  set_island(script, 2200, 11);
+  script.dsn[2] = first;
+  if (joins) script.join(4000, 11, 2, 300);
+  for (std::uint16_t i = 10; i < 30; ++i) forwards(script, 1000 + 400 * i, 2, i);
+  return script;
+}
+
+TEST(Captures, ARebootedMoteComesToItsOldDsnsAgain) {
+  for (int first = 250; first < 260; ++first) {
+    const auto dsn = static_cast<std::uint8_t>(first);
+    EXPECT_EQ(found_in(reborn(dsn)), "") << first;
+    EXPECT_EQ(found_in(reborn(dsn), false), "") << first;
+  }
+  for (const int first : {252, 253, 254, 255, 256, 257, 200}) {
+    const auto dsn = static_cast<std::uint8_t>(first);
+    EXPECT_EQ(found_in(reborn(dsn, false)), "F:J11-SEND") << first;
+  }
+}
+
+TEST(Captures, ARequestAfterARebootHasTheLastDsnBeforeIt) {
+  for (const int asked : {1, 2, 3}) {  // The first ones get no answer.
+    Script script;
+    script.join(0, 11, 2, 100).join(500, 11, 3, 200);
+    set_island(script, 2000, 12);
+    set_island(script, 2200, 11);
+    --script.dsn[2];
+    for (int i = 1; i < asked; ++i) script.request(4000 - 500.0 * i, 2, 300);
+    std::ranges::sort(script.run.seen, {}, [](const auto& seen) { return seen.place.time_us; });
+    script.join(4000, 11, 2, 300);
+    for (std::uint16_t i = 10; i < 20; ++i) forwards(script, 1000 + 400 * i, 2, i);
+    EXPECT_EQ(found_in(script, false).find("F:"), std::string::npos) << found_in(script, false);
+  }
 }
 
 TEST(Captures, ASinkThatGetsTheIslandOfAnotherKeepsItsLine) {

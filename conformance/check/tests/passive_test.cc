@@ -2,6 +2,7 @@
 // slow, late or unlucky but keep it are not blamed.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 #include <string>
 #include <vector>
@@ -267,6 +268,92 @@ TEST(Passive, AReceiverThatDiedIsOneFinding) {
   EXPECT_EQ(rules_of(open), "T2-ACK");
   EXPECT_NE(open[0].text.find("Nothing of mote 3 is seen"), std::string::npos) << open[0].text;
   EXPECT_NE(open[0].text.find("12 things"), std::string::npos) << open[0].text;
+}
+
+TEST(Passive, AnAckOnItsWayEndsNoWait) {
+  const auto again = [](bool relayed, bool link_ack) {
+    const NetFields asked = message({11, 2}, {11, kNullDevid}, 700, 1);
+    Script script;
+    script.join(0, 11, 2, 100);
+    script.net(500, 2, 1, asked).up(512, asked.forwarded()).down(540, asked.ack(40)).confirm();
+    if (relayed) script.net(560, 1, 2, asked.ack(40), 11);
+    if (link_ack) script.link_ack();
+    script.net(900, 2, 1, asked);
+    if (!relayed) script.net(1000, 1, 2, asked.ack(40), 11);
+    script.up(1012, asked.forwarded());
+    return found_in(script);
+  };
+  EXPECT_NE(again(false, false).find("F:T3-RESEND"), std::string::npos) << again(false, false);
+  EXPECT_NE(again(true, false).find("I:T3-RESEND"), std::string::npos) << "It may be lost.";
+  EXPECT_EQ(again(true, true).find("T3-RESEND"), std::string::npos) << again(true, true);
+}
+
+TEST(Passive, AMemberMaySendBeforeItsAckJoinHasLeft) {
+  const auto sends = [](bool acks) {
+    Script script;
+    script.request(0, 2, 100).reply(10, 11, 2, 100, 10);
+    script.net(15, 2, 1, update(2, 7)).up(27, update(2, 7).forwarded());
+    if (acks) script.ack_join(35, 11, 2, 100).link_ack().joined(60, 11, 2);
+    return found_in(script);
+  };
+  EXPECT_EQ(sends(true), "");
+  EXPECT_NE(sends(false).find("F:J4-ACK"), std::string::npos) << sends(false);
+}
+
+TEST(Passive, AHostThatNobodyHearsMaySetTheIsland) {
+  Script script;  // Of the line only what the sink sends is captured.
+  script.join(0, 11, 2, 100).join(2000, 30, 3, 200);
+  script.net(3000, 3, 1, message({30, 3}, {30, kNullDevid}, 7));
+  script.up(3012, message({30, 3}, {30, kNullDevid}, 7).forwarded());
+  EXPECT_EQ(found_in(script), "I:");
+  script.down(4000, message({30, kNullDevid}, {30, 3}, 9));
+  EXPECT_NE(found_in(script).find("F:"), std::string::npos) << found_in(script);
+}
+
+TEST(Passive, AfterWrongSourcesTheRightOneIsRight) {
+  Script script;
+  script.join(0, 11, 2, 100);
+  const auto sends = [&](double ms, std::uint16_t devid, std::uint16_t seq_num) {
+    const NetFields net = message({11, devid}, {11, kNullDevid}, seq_num);
+    script.net(ms, 2, 1, net).up(ms + 12, net.forwarded());
+  };
+  for (std::uint16_t i = 0; i < 3; ++i) sends(1000 + 500 * i, 79, 7 + i);
+  EXPECT_EQ(found_in(script), "F:N1-SRC");
+  sends(3000, 2, 10);
+  sends(3500, 2, 11);
+  EXPECT_EQ(found_in(script), "F:N1-SRC");
+  sends(4000, 79, 12);
+  EXPECT_EQ(found_in(script), "F:N1-SRC F:N1-SRC");
+}
+
+TEST(Passive, WhatComesFromOtherIslandsIsSeenOnNoLine) {
+  const auto acks = [](machine::Address of) {
+    const NetFields asked = message(of, {11, kNullDevid}, 2464, 1);
+    Script script;
+    script.join(0, 11, 2, 100).down(100, asked.ack(90)).confirm();
+    return found_in(script).find("F:T2-CONTENT") != std::string::npos;
+  };
+  EXPECT_FALSE(acks({12, 8}));
+  EXPECT_TRUE(acks({11, 2}));
+}
+
+TEST(Passive, ABufferIsNotFullOfWhatHasLeft) {
+  const auto loses = [](double forward_ms) {  // A message each 60 ms; the fifth is lost.
+    Script script;
+    script.join(0, 11, 2, 100);
+    for (std::uint16_t i = 0; i < 16; ++i) {
+      const double ms = 1000 + 60 * i;
+      const NetFields net = update(2, 7 + i);
+      script.net(ms, 2, 1, net).link_ack();
+      if (i != 4) script.up(ms + forward_ms, net.forwarded());
+    }
+    std::ranges::stable_sort(script.run.seen, {},
+                             [](const auto& one) { return one.place.time_us; });
+    for (std::size_t i = 0; i < script.run.seen.size(); ++i) script.run.seen[i].place.frame = i + 1;
+    return found_in(script).substr(0, 12);
+  };
+  EXPECT_EQ(loses(12), "F:N6-FORWARD");
+  EXPECT_EQ(loses(240), "I:N6-FORWARD") << "Four were waiting.";
 }
 
 }  // namespace

@@ -3,8 +3,10 @@
 
 #include <cstdint>
 #include <map>
+#include <string>
 #include <vector>
 
+#include "codec/reflect/requirements.h"
 #include "conformance/check/message.h"
 #include "conformance/check/observation.h"
 #include "conformance/check/storage.h"
@@ -208,5 +210,19 @@ class Script {
     return seen;
   }
 };
+
+/// Returns the rules of all but notes, each with the letter of its severity: "F:N9-SET I:J5-STOP".
+inline std::string found_in(const Script& script, bool complete = true) {
+  Options options{.sniffer_complete = complete, .start_cold = complete};
+  std::string out;
+  for (const Finding& finding : judge(script.run, options).findings) {
+    if (finding.severity == Severity::kNote) continue;
+    const char* const id = reflect::requirement(finding.requirement).id;
+    out += out.empty() ? "" : " ";
+    out += "NWSIF"[static_cast<std::size_t>(finding.severity)];
+    out += ":" + std::string(id);
+  }
+  return out;
+}
 
 }  // namespace rubric::check
