@@ -63,9 +63,12 @@ islands:
         self.assertEqual(self.why(base, reliable=True),
                          "as many acknowledgements are awaited as can be")
         sink = self.started("sink", "--island", "11", "--radio", "zep:0", "--app", "-")
-        for _ in range(8):
-            sink.call("send", dest="11:5", app_id=10, reliable=False, data="")
-        self.assertEqual(self.why(sink, dest="11:5"), "the outgoing buffer is full")
+        # At once, so that the radio has no time to send.
+        sink.process.stdin.write(8 * b'{"call":"send","dest":"11:5","app_id":10,"reliable":false,'
+                                     b'"data":""}\n')
+        sink.process.stdin.flush()
+        self.assertEqual([sink.event("send_result") for _ in range(8)][-1]["why"],
+                         "the outgoing buffer is full")
         sink.call("interface", link="radio", on=False)
         self.assertEqual(self.why(sink, dest="11:5"), "the line is switched off")
 
