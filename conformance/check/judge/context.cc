@@ -152,7 +152,6 @@ void Context::look_up() {
     report(one.requirement, Severity::kInconclusive, run.seen[one.index].place, node,
            {one.text, one.expected, {}});
   }
-  find_restarts();
   lossy_taps = find_lossy_taps(run, who, options);
   lossy_air = who.hears_radio && misses_air(who, options);
   untimed_taps = run.unordered_taps;
@@ -166,35 +165,6 @@ void Context::look_up() {
     order = its;
     if (its >= 0) untimed_taps[seen.tap] = true;
   }
-}
-
-void Context::find_restarts() {
-  restarts_.resize(who.devices.size());
-  std::vector<std::int64_t> heard_us(who.devices.size(), -1);
-  for (std::size_t i = 0; i < run.seen.size(); ++i) {
-    const Mark& mark = who.marks[i];
-    if (run.seen[i].kind != Observation::Kind::kRadio || mark.device == kNobody) continue;
-    const std::int64_t now = run.seen[i].place.time_us;
-    if (mark.new_life) restarts_[mark.device].emplace_back(heard_us[mark.device], now);
-    heard_us[mark.device] = now;
-  }
-  for (const Device& stranger : who.devices) {  // It may be one of so few frames.
-    if (stranger.known || !stranger.radio) continue;
-    for (std::size_t i = 0; i < who.devices.size(); ++i) {
-      const Device& its = who.devices[i];
-      const bool alike = its.known && its.radio && its.am == stranger.am;
-      if (alike && its.role == stranger.role && its.last_us < stranger.first_us) {
-        restarts_[i].emplace_back(its.last_us, stranger.first_us);
-      }
-    }
-  }
-}
-
-bool Context::may_have_restarted(std::uint16_t node, std::int64_t from_us,
-                                 std::int64_t to_us) const {
-  return std::ranges::any_of(restarts_[node], [&](const auto& between) {
-    return between.first < to_us && between.second > from_us;
-  });
 }
 
 bool Context::rests_on_order(ReqId requirement, const Place& at, std::uint16_t node) const {

@@ -175,10 +175,6 @@ struct Context {
     return {profile(node), device(node).am, island, 0, machine::ticks_of(now_us)};
   }
 
-  /// Returns whether the node may have started anew between two times: by later frames of the air
-  /// it did between its last frame before and the first of a new life.
-  bool may_have_restarted(std::uint16_t node, std::int64_t from_us, std::int64_t to_us) const;
-
   /// Returns the severity of "X without an earlier Y of `cause`": kFail only if no Y can have
   /// escaped.
   Severity without(std::uint16_t cause, std::int64_t from_us, std::int64_t to_us) const;
@@ -230,10 +226,7 @@ struct Context {
   std::vector<std::pair<std::int64_t, std::int64_t>> logs_us_;  // The log's first and last line.
   std::vector<std::set<std::size_t>> told_;  // Which kinds of events its application got.
   Terms unlogged_;
-  // By device: times between which a life of it began.
-  std::vector<std::vector<std::pair<std::int64_t, std::int64_t>>> restarts_;
 
-  void find_restarts();
   int backlog_of(std::uint16_t node, std::size_t index) const;
   int backlog(std::uint16_t node, std::int64_t time_us) const;
   /// Findings that are told as one.

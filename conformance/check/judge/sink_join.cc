@@ -144,16 +144,13 @@ bool SinkJoins::keeps_former(SinkWatch& sink, std::uint16_t shown, const Place& 
       at.time_us <= context_.due_us(sink.device, sink.island_set_us)) {
     return true;
   }
-  const bool behind = sink.behind_us > sink.island_set_us;
   const bool rebooted =
-      !context_.device(sink.device).hearing &&
-      (behind || context_.may_have_restarted(sink.device, sink.island_set_us, at.time_us));
+      sink.behind_us > sink.island_set_us && !context_.device(sink.device).hearing;
   if (sink.island_sure && !rebooted) return false;
   context_.report("N9-SET"_rule, Severity::kInconclusive, at, sink.device,
                   {"The sink acts for island " + number(shown) + " after it was told island " +
                        number(sink.island) +
-                       (rebooted ? std::string("; its ") + (behind ? "clock" : "DSNs") +
-                                       " began anew, so that it may have lost its power."
+                       (rebooted ? "; its clock began anew, so that it may have lost its power."
                                  : "; nothing proves that it heard that."),
                    "Island " + number(sink.island) + ", if it was told.",
                    {}});
