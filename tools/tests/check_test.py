@@ -323,7 +323,8 @@ class Inputs(Folder):
 
     def test_a_capture_of_another_protocol_is_said(self):
         blink = self.write("blink.hex", "00 FF FF 00 00 04 22 06 00 02 00 01\n")
-        says = "its messages fit rubicon less well than blink_to_radio, which decodes 1 of its first 1"
+        says = ("its messages fit rubicon less well than blink_to_radio, "
+                "which decodes 1 of its first 1")
         for args in ((blink,), ("--each", blink)):
             code, out, err = check(*args)
             self.assertEqual((code, (err + out).count(says)), (3, 1), err)
