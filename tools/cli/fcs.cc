@@ -12,7 +12,6 @@ constexpr std::int32_t kCorrelationMin = 40;
 constexpr std::int32_t kCorrelationMax = 115;
 constexpr std::uint64_t kAlikeMin = 8;
 constexpr std::uint64_t kAlikeToSay = 3;
-constexpr std::uint64_t kAlikeOfNoisy = 24;
 constexpr std::uint64_t kFcsBytes = 2;
 
 bool has_fcs(const Packet& packet) {
@@ -51,9 +50,7 @@ void FcsGuess::take(const Packet& packet) {
 }
 
 bool FcsGuess::is_cc24xx() const {
-  const bool nearly_all = alike_ >= kAlikeMin && other_ * 9 <= alike_;
-  const bool most = alike_ >= kAlikeOfNoisy && other_ * 2 <= alike_;
-  return (nearly_all || most) && sound_ * 50 <= alike_;
+  return alike_ >= kAlikeMin && sound_ * 50 <= alike_ && other_ * 9 <= alike_;
 }
 
 bool FcsGuess::may_be_cc24xx() const {

@@ -21,10 +21,9 @@ FcsKind fcs_kind(std::string_view name);
 
 /// Recognises the trailers of TI's CC24xx chips. Needs eight different frames whose check sums
 /// fail, while nearly all have the CRC bit and a correlation that the chip gives sound frames
-/// (CC2420 data sheet, section "Link quality indication": about 50 to 110); beside 24 such frames
-/// and more, half as many others may be, as on a noisy channel. Random bytes pass as one such frame
-/// in three cases of ten, so that damaged frames are taken for sound ones in fewer than 1 of 10,000
-/// captures. One frame in 50 may have an FCS that holds by chance.
+/// (CC2420 data sheet, section "Link quality indication": about 50 to 110). Random bytes pass as
+/// one such frame in four cases, so that eight damaged frames are taken for sound ones in fewer
+/// than 1 of 50,000. One frame in 50 may have an FCS that holds by chance.
 class FcsGuess {
  public:
   void take(const Packet& packet);

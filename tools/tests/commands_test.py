@@ -75,15 +75,6 @@ class Fcs(Folder):
         rubric("convert", "--format", "pcap", "-o", again, file)
         self.assertEqual(again.read_bytes()[24:], file.read_bytes()[24:])
 
-    def test_trailers_of_a_noisy_channel(self):
-        frames = self.radio_frames()
-        ends = [frame + bytes((196, (0x80 if i % 4 else 0) + 90)) for i, frame in enumerate(frames)]
-        code, out, err = rubric("decode", "--format", "csv", "--fields", "index,error",
-                                self.pcap(ends))
-        self.assertEqual((code, err.count("--fcs cc24xx")), (1, 1))
-        self.assertEqual(out.decode().split("\r\n")[1:-1],
-                         [f"{i}," + ("" if i % 4 else "fcs") for i in range(len(frames))])
-
     def test_frames_that_were_captured_without_fcs(self):
         """As Contiki's Cooja writes them: the record says that two bytes are missing."""
         frames = self.radio_frames()

@@ -152,13 +152,12 @@ TEST(Passive, WhatCameDownALineLeavesByRadio) {
 
 TEST(Passive, LifeOnTheOtherLineShowsWhatIsMissing) {
   const auto unseen = [](Script script, bool two_files) {
-    Options complete;
-    complete.sniffer_complete = complete.start_cold = true;
+    script.run.files = {"radio", "line"};
     for (Observation& seen : script.run.seen) {
       seen.place.file = two_files && seen.kind == Observation::Kind::kSerial ? 1 : 0;
     }
     return failures_of(script) + rules_of(findings_of(script, Severity::kInconclusive)) + " " +
-           failures_of(script, complete);
+           failures_of(script, complete());
   };
   const auto forwards = [](Script& s) {
     s.net(900, 2, 1, update(2, 8)).link_ack().up(912, update(2, 8).forwarded());
