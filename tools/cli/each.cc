@@ -242,8 +242,11 @@ std::string content_of(int fd) {
   std::string out;
   char bytes[4096];
   ::lseek(fd, 0, SEEK_SET);
-  for (ssize_t count = 0; (count = ::read(fd, bytes, sizeof bytes)) > 0;) {
-    out.append(bytes, static_cast<std::size_t>(count));
+  for (ssize_t count = 0; (count = ::read(fd, bytes, sizeof bytes)) != 0;) {
+    if (count < 0 && errno != EINTR) {
+      throw std::system_error(errno, std::generic_category(), "the result of a run");
+    }
+    if (count > 0) out.append(bytes, static_cast<std::size_t>(count));
   }
   ::close(fd);
   return out;

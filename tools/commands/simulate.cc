@@ -82,7 +82,7 @@ void run_simulate(const SimulateOptions& options) {
   if (log) good = cli::write_file(options.rtr, trace::print(log->file()));
   if (capture) good = cli::write_file(options.pcapng, capture->finish()) && good;
   const bool taken = options.rtr == "-" || options.pcapng == "-";
-  text::print(taken ? stderr : stdout, "{}", summary(simulation.statistics()));
+  text::print_harmless(taken ? stderr : stdout, summary(simulation.statistics()));
   if (!good) cli::exit_with(cli::kExitOutput);
 }
 

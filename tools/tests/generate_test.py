@@ -183,7 +183,7 @@ class Generate(Folder):
         self.assert_refused("--seed", "--seed", "-1")
         self.assert_refused("--format", "--format", "pcap")
         self.assert_refused("did you mean 'updates'", "--message", "updats")
-        self.assert_refused("did you mean 'oscilloscope'", "--protocol", "osciloscope")
+        self.assert_refused("did you mean 'oscilloscope'", "--spec", "osciloscope")
         self.assert_refused("pcapng and jsonl do", "--format", "sf", "--message", "join_request")
         self.assert_refused("jsonl carries the expectations", "--expect", target)
         self.assert_refused("is also an input or another output", "--format", "hex",

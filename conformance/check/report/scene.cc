@@ -106,6 +106,9 @@ Scene::Scene(const check::Run& run, const check::Options& options)
   for (const check::Device& device : who_.devices) {
     names_.push_back(short_name(device));
     if (device.role == Role::kSink) sinks_.insert(device.am);
+    const auto node = static_cast<std::uint16_t>(&device - who_.devices.data());
+    of_am_[device.am].push_back(node);
+    if (device.am != 0xFFFF) of_am_[0xFFFF].push_back(node);
     const bool motes = device.role == Role::kMote || device.island == check::kNoIsland;
     if (!motes && device.island < first_island) first_island = device.island;
   }
@@ -147,14 +150,14 @@ void Scene::add_radio_receivers(std::size_t i, std::vector<std::uint16_t>& out) 
   // Takes the sink of that island, else whoever has the address, else strangers that have it.
   const auto matches = [&](const check::Device& device, bool exactly, bool known) {
     if (device.known != known || device.role == Role::kBaseStation) return false;
-    if (frame.dest != 0xFFFF && frame.dest != device.am) return false;
     return !exactly || device.role == Role::kMote || device.island == island;
   };
+  const auto heard_by = of_am_.find(frame.dest);
+  if (heard_by == of_am_.end()) return;
   for (const auto& [exactly, known] : {std::pair{true, true}, {false, true}, {false, false}}) {
     if (exactly && island == check::kNoIsland) continue;
-    for (std::size_t d = 0; d < who_.devices.size(); ++d) {
-      const auto node = static_cast<std::uint16_t>(d);
-      if (node != sender(i) && matches(who_.devices[d], exactly, known)) out.push_back(node);
+    for (const std::uint16_t node : heard_by->second) {
+      if (node != sender(i) && matches(who_.devices[node], exactly, known)) out.push_back(node);
     }
     if (!out.empty()) return;
   }

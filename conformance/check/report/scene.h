@@ -1,6 +1,7 @@
 // Describes in words who sent what to whom: the frames of a run as a report shows them.
 #pragma once
 
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -49,7 +50,8 @@ class Scene {
   check::Identity who_;
   std::vector<std::string> names_;
   std::vector<std::size_t> ranks_;
-  std::set<std::uint16_t> sinks_;  // Their AM addresses.
+  std::set<std::uint16_t> sinks_;                              // Their AM addresses.
+  std::map<std::uint16_t, std::vector<std::uint16_t>> of_am_;  // Devices; of 0xFFFF all.
 };
 
 }  // namespace rubric::report
