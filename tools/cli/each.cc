@@ -156,6 +156,17 @@ std::string key_of(const EachJob& job, const std::string& file) {
   return fmt::format("{:016x}", hash_of(text));
 }
 
+// Reads a file to its end. Throws std::system_error, which says `name`.
+std::string rest_of(int fd, const std::string& name) {
+  std::string out;
+  char bytes[65536];
+  for (ssize_t count = 0; (count = ::read(fd, bytes, sizeof bytes)) != 0;) {
+    if (count > 0) out.append(bytes, static_cast<std::size_t>(count));
+    if (count < 0 && errno != EINTR) throw std::system_error(errno, std::generic_category(), name);
+  }
+  return out;
+}
+
 // The results of earlier commands: a line each, {"key":"0123456789abcdef","run":{...}}. A line that
 // a kill cut short, or of another schema, counts for nothing.
 class State {
@@ -198,15 +209,7 @@ class State {
   inline static const std::string kBetween = R"(","run":)";
 
   void read(const std::string& path) {
-    std::string text;
-    char bytes[65536];
-    while (true) {
-      const ssize_t count = ::read(fd_, bytes, sizeof bytes);
-      if (count < 0 && errno == EINTR) continue;
-      if (count < 0) throw std::system_error(errno, std::generic_category(), path);
-      if (count == 0) break;
-      text.append(bytes, static_cast<std::size_t>(count));
-    }
+    const std::string text = rest_of(fd_, path);
     const std::size_t head = kBefore.size() + kKeyChars + kBetween.size();
     std::size_t at = 0;
     for (std::size_t end = 0; (end = text.find('\n', at)) != text.npos; at = end + 1) {
@@ -239,15 +242,8 @@ int memory_file() {
 }
 
 std::string content_of(int fd) {
-  std::string out;
-  char bytes[4096];
   ::lseek(fd, 0, SEEK_SET);
-  for (ssize_t count = 0; (count = ::read(fd, bytes, sizeof bytes)) != 0;) {
-    if (count < 0 && errno != EINTR) {
-      throw std::system_error(errno, std::generic_category(), "the result of a run");
-    }
-    if (count > 0) out.append(bytes, static_cast<std::size_t>(count));
-  }
+  std::string out = rest_of(fd, "the result of a run");
   ::close(fd);
   return out;
 }

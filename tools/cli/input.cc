@@ -271,8 +271,7 @@ class Run {
     if (is_hex_dump(beginning)) {
       return "this is a hex dump with offsets; 'text2pcap -l 195 FILE FILE.pcap' makes a capture "
              "of it (-l 230 for radio frames without FCS, -l 148 for packets from the dispatch "
-             "byte "
-             "on)";
+             "byte on)";
     }
     const std::string_view text(reinterpret_cast<const char*>(beginning.data()), beginning.size());
     if (text.substr(0, text.find('\n')).find(": 15.4 ") != text.npos) {

@@ -371,7 +371,6 @@ bool Context::full(std::uint16_t node, std::int64_t time_us) const {
   return busy(node, time_us, time_us, kNone) && crowded(node, time_us);
 }
 
-// Returns whether the node was seen to pass on what came, so that it waits for nothing then.
 bool Context::passed_on(std::uint16_t node, std::vector<Observation>::const_iterator came,
                         std::int64_t until_us) const {
   Net net;
@@ -406,14 +405,14 @@ bool Context::crowded(std::uint16_t node, std::int64_t time_us) const {
     const bool line = it->kind == Observation::Kind::kSerial && mark.device != kNobody;
     const bool air = it->kind == Observation::Kind::kRadio && !it->received && mark.device != node;
     if (it->frame.type != am::kNet) continue;
-    if (!its.hearing && passed_on(node, it, time_us)) continue;
     if (its.hearing) {
       around += mark.receiver == node ? 1 : 0;
-    } else if (air && (it->frame.dest == its.am || it->frame.dest == machine::kAmBroadcast)) {
-      ++around;
-    } else if (line && device(mark.device).partner == node) {
-      ++around;
+      continue;
     }
+    const bool by_air =
+        air && (it->frame.dest == its.am || it->frame.dest == machine::kAmBroadcast);
+    const bool came = by_air || (line && device(mark.device).partner == node);
+    if (came && !passed_on(node, it, time_us)) ++around;
   }
   return around > kCrowd;
 }

@@ -160,6 +160,7 @@ struct Context {
   /// Returns whether so many messages came to the node around that time that they may have found a
   /// buffer full (decision 122); by a whole log, whether so many waited for it to handle them.
   bool crowded(std::uint16_t node, std::int64_t time_us) const;
+  /// Returns whether the node was seen to pass on, before then, what came: it waits no more.
   bool passed_on(std::uint16_t node, std::vector<Observation>::const_iterator came,
                  std::int64_t until_us) const;
   /// Returns whether by its log the application of the node took nothing then, and so many messages

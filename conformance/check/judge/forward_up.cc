@@ -220,7 +220,7 @@ void Forwarding::unheard(Line& line, const Passing& early) {
                        passing.place.time_us <= early.place.time_us;
     if (waits && alike) meant = &passing;
   }
-  // Its own, if its host, of which nothing is heard, set another island.
+  // It may be the sink's own message: its host, which nobody hears, may have set another island.
   if (meant == nullptr && early.net.src.devid == line.am && context_.half_heard(line.sink)) {
     return context_.needs_host(line.sink, early.place);
   }

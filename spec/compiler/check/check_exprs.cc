@@ -156,7 +156,7 @@ class Resolver {
   }
 
   /// Returns whether the field that is the whole path may be at a place that differs from frame to
-  /// frame: where it is found again. Carriers are told apart by constant places.
+  /// frame, and is looked for in each. Carriers are told apart by constant places.
   bool may_float(const Expr& expr) const {
     return check_.at_run_time && expr.path.size() == 1 && !scope_.peeks &&
            scope_.type.carrier.empty();
