@@ -30,6 +30,7 @@ constexpr std::string_view kOwnStyles =
     "summary { cursor: pointer; overflow-wrap: anywhere; }\n"
     "pre { overflow-x: auto; background: var(--panel); padding: .6em 1em; }\n"
     "main { padding: 1em 1.6em; max-width: 90em; overflow-wrap: anywhere; }\n"
+    "ul.rules { columns: 14em; list-style: none; padding: 0; }\n"
     "b.fail { color: var(--fail); } b.weak { color: var(--weak); }\n"
     "b.inconclusive, b.stray, b.note { color: var(--inconclusive); }\n";
 
@@ -113,12 +114,12 @@ std::string html_report(const Story& story, const TextOptions& options, std::str
     out += fmt::format("<p>{}</p>\n", text::xml_text(fact));
   out += "<h2>Findings</h2>\n";
   out += findings_html(story, options);
-  out += "<h2>Rules that were kept</h2>\n<p>";
+  out += "<h2>Rules exercised</h2>\n<ul class=\"rules\">\n";
   for (const auto& [id, count] : found.exercised) {
-    out += fmt::format("<code>{}</code> {}\n", text::xml_text(reflect::requirement(id).id),
+    out += fmt::format("<li><code>{}</code> {}</li>\n", text::xml_text(reflect::requirement(id).id),
                        text::counted(count, "time"));
   }
-  return out + "</p>\n</main>\n</body>\n</html>\n";
+  return out + "</ul>\n</main>\n</body>\n</html>\n";
 }
 
 }  // namespace rubric::report
