@@ -143,7 +143,10 @@ std::uint16_t Streams::assign(std::uint32_t index, bool& repeat) {
     int points = score(stream, seen, hint);
     if (points == kNoMatch) continue;
     const bool request = seen.frame.type == am::kJoin;
-    if (best != kLast && streams_[best].renews(stream, points == best_score, request)) continue;
+    // It is alive, and has a namesake, if this ack_join has the number that it asked with.
+    const bool alive = seen.frame.type == am::kAckJoin && hint.join == stream.join;
+    if (best != kLast && !alive && streams_[best].renews(stream, points == best_score, request))
+      continue;
     const bool stray =
         stream.frames == 1 && frames_of_[seen.frame.src] - stream.last_of_am > kStrayAfter;
     if (!stray) ++candidates;

@@ -106,7 +106,9 @@ TEST(Legal, NoAlarmComesBack) {
       {"in_full", 195, "exact"},         // A buffer filled by messages that only passed through.
       {"host_loops_radiated", 89, "exact"},    // A frame taken for that of the other sink.
       {"island_change_forgets", 91, "exact"},  // An ack of before SET_ISLAND_ID.
-      {"mixed", 2754, "exact"},  // A repeat of an ack_join whose first was not captured.
+      {"mixed", 2754, "exact"},      // A repeat of an ack_join whose first was not captured.
+      {"same_devid", 42, "exact"},   // Namesakes with the same DSNs that join at once.
+      {"same_devid", 189, "exact"},  // The same; the second accepts first.
   };
   Count count;
   for (const Alarm& one : kAlarms) judge_both(one.variant, one.seed, one.recorder, count);
