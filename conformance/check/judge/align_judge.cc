@@ -213,11 +213,11 @@ void move_all(Run& run, std::int64_t by_us) {
   move_nodes(run, std::nullopt, move);
 }
 
-// Returns the run without what logs say whose clocks are not known.
-Run without_logs(const Run& run) {
+// Returns the run without what logs say; with `unknown` of those alone whose clocks are not known.
+Run without_logs(const Run& run, bool unknown) {
   Run out = run;
   for (const LogClock& log : run.logs) {
-    if (log.known) continue;
+    if (unknown && log.known) continue;
     std::erase_if(out.seen, [&](const Observation& seen) { return seen.place.file == log.file; });
     for (LoggedNode& node : out.nodes) {
       if (node.file != log.file) continue;
@@ -262,9 +262,47 @@ Blamed blamed_alone(const Run& run, Options options) {
   return out;
 }
 
+// Returns the log of the node that a finding names; nullptr if it has none.
+const LoggedNode* logged_of(const Run& run, const Finding& finding) {
+  const auto its = std::ranges::find_if(run.nodes, [&](const LoggedNode& node) {
+    if (node.role == machine::Role::kMote) return finding.node == "mote " + number(node.id);
+    const bool sink = node.role == machine::Role::kSink;
+    const std::string role = sink ? "sink" : "base station";
+    return finding.node == role + " of island " + number(node.island) ||
+           (finding.node.starts_with(role) && node.island == kNoIsland);
+  });
+  return its != run.nodes.end() ? &*its : nullptr;
+}
+
+// Returns the findings of captures about nodes whose logs had not begun then, or were over: what
+// such a log does not say, nobody has recorded.
+std::vector<Finding*> unlogged(const Run& run, Report& report) {
+  using Span = std::pair<std::int64_t, std::int64_t>;
+  std::map<std::uint32_t, Span> logs;
+  for (const Observation& seen : run.seen) {
+    const std::int64_t time_us = seen.place.time_us;
+    if (!seen.place.timed() || seen.node.empty()) continue;
+    Span& span = logs.emplace(seen.place.file, Span(time_us, time_us)).first->second;
+    span = {std::min(span.first, time_us), std::max(span.second, time_us)};
+  }
+  std::vector<Finding*> out;
+  for (Finding& finding : report.findings) {
+    // An absence that no frame shows is judged where it is found, by how far the log goes.
+    if (!blames(finding) || !finding.place.timed() || finding.place.frame == 0) continue;
+    if (logs.contains(finding.place.file)) continue;
+    const LoggedNode* const node = logged_of(run, finding);
+    if (node == nullptr || node->hearing || !logs.contains(node->file)) continue;
+    const auto [from_us, to_us] = logs.at(node->file);
+    const std::int64_t at_us = finding.place.time_us;
+    if (at_us < from_us || at_us > to_us) out.push_back(&finding);
+  }
+  return out;
+}
+
 // Judges a run of several files, some of them logs. A failure or a weak finding remains if a log
 // alone shows it, or if it is found at each time at which the logs may have begun, and without the
-// logs whose clocks are not known; else it becomes inconclusive.
+// logs whose clocks are not known, and without all logs where the node's had not begun or was over;
+// else it becomes inconclusive.
 Report judge_each_log(const Run& run, const Options& options) {
   const auto judged = [&](Run now, bool with_all = true) {
     now.logs.clear();
@@ -301,7 +339,15 @@ Report judge_each_log(const Run& run, const Options& options) {
     stands_in({judged(std::move(now)).findings, room_us});
   }
   if (!std::ranges::all_of(run.logs, &LogClock::known)) {
-    stands_in({judged(without_logs(run), false).findings});
+    stands_in({judged(without_logs(run, true), false).findings});
+  }
+  const std::vector<Finding*> open = unlogged(run, report);
+  if (!open.empty()) {
+    const Blamed captures{judged(without_logs(run, false), false).findings, 0};
+    for (Finding* const finding : open) {
+      if (alone.has(*finding, near_us) || captures.has(*finding, near_us)) continue;
+      finding->severity = Severity::kInconclusive;
+    }
   }
   report.verdict = verdict_of(report.findings);
   return report;

@@ -100,6 +100,10 @@ void Context::look_up() {
     from_us = std::min(from_us, seen.place.time_us);
     std::int64_t& to_us = file_to_us[seen.place.file];
     to_us = std::max(to_us, seen.place.time_us);
+    if (!seen.node.empty() || !seen.place.timed()) continue;
+    if (!captured_) captured_ = {seen.place.time_us, seen.place.time_us};
+    captured_->first = std::min(captured_->first, seen.place.time_us);
+    captured_->second = std::max(captured_->second, seen.place.time_us);
   }
   tap_from_us.resize(run.taps.size());
   for (const Observation& seen : run.seen) tap_from_us[seen.tap] = file_from_us[seen.place.file];

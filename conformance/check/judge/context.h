@@ -112,6 +112,20 @@ struct Context {
   bool log_begun(std::uint16_t node, std::int64_t time_us) const {
     return node < logs_us_.size() && logs_us_[node].first <= time_us;
   }
+  /// Returns until when the node's log goes on beside captures, which may be longer.
+  std::int64_t log_end_us(std::uint16_t node) const {
+    const bool cut = node < logs_us_.size() && captured_ && !device(node).hearing;
+    return cut ? logs_us_[node].second : INT64_MAX;
+  }
+  /// Returns whether captures that show what the node sends, as its log does not, began later.
+  bool before_captures(std::uint16_t node, std::int64_t time_us) const {
+    return captured_ && !device(node).hearing && time_us < captured_->first;
+  }
+  /// Returns until when they do.
+  std::int64_t captures_end_us(std::uint16_t node) const {
+    const bool cut = node < logs_us_.size() && captured_ && !device(node).hearing;
+    return cut ? captured_->second : INT64_MAX;
+  }
   /// Returns whether an event at the application of the node that is due by then would be in its
   /// log: that has what the node was given, or events of this kind, and goes on.
   template <class Event>
@@ -224,7 +238,8 @@ struct Context {
  private:
   std::vector<Terms> logged_;           // By device.
   std::vector<std::int64_t> begun_us_;  // Of these: when the log shows that it begins anew.
-  std::vector<std::pair<std::int64_t, std::int64_t>> logs_us_;  // The log's first and last line.
+  std::vector<std::pair<std::int64_t, std::int64_t>> logs_us_;     // The log's first and last line.
+  std::optional<std::pair<std::int64_t, std::int64_t>> captured_;  // The same of all captures.
   std::vector<std::set<std::size_t>> told_;  // Which kinds of events its application got.
   Terms unlogged_;
 

@@ -543,7 +543,8 @@ void SynapticWatch::settle(std::uint16_t device, std::int64_t now_us) {
 }
 
 void SynapticWatch::settle_at(std::uint16_t device, std::int64_t now_us) {
-  settle_outputs(device, now_us);
+  now_us = std::min(now_us, context_.log_end_us(device));  // Later calls are not known.
+  settle_outputs(device, std::min(now_us, context_.captures_end_us(device)));
   settle_unknowns(device, now_us);
   Node& node = nodes_[device];
   if (!context_.device(device).application) return;

@@ -248,6 +248,51 @@ TEST(AlignLogs, ALogThatSaysSomethingElseThanTheCaptureIsFound) {
   EXPECT_EQ(report.verdict, Verdict::kInconclusive);
 }
 
+// A log whose writer was killed, or begun late, and a capture that begins after the log.
+TEST(AlignLogs, NobodyIsBlamedForWhatAShortLogDoesNotSay) {
+  for (const char* scenario : {"open_door", "inter_island", "hospital"}) {
+    const Recorded run = recorded(scenario);
+    for (const int cut : {2500, 4100, 6000}) {
+      const auto head = [&](int tick, const std::string&) { return tick > cut ? -1 : tick; };
+      const auto tail = [&](int tick, const std::string&) { return tick < cut ? -1 : tick; };
+      EXPECT_EQ(broken_in(judged({run.capture, retimed(run.log, head)})), "")
+          << scenario << ", the log until " << cut;
+      EXPECT_EQ(broken_in(judged({run.capture, retimed(run.log, tail)})), "")
+          << scenario << ", the log from " << cut;
+      std::int64_t begin_ns = 0;
+      const auto late = [&](Packet& packet) {
+        if (begin_ns == 0) begin_ns = packet.time_ns;
+        return packet.time_ns - begin_ns < std::int64_t{cut} * 976'562 ? -1 : 0;
+      };
+      EXPECT_EQ(broken_in(judge(read_apart(run.capture, 1, late, {run.log}), {})), "")
+          << scenario << ", the capture from " << cut;
+    }
+  }
+}
+
+// What both cover is judged, and so is what the capture shows alone.
+TEST(AlignLogs, WhatAShortLogShowsIsFound) {
+  const Recorded run = recorded("timeline");
+  const std::regex joined(" *@\\d+ +m3 +> +app +joined.*\n");
+  ASSERT_TRUE(std::regex_search(run.log, joined));
+  const auto head = [&](int tick, const std::string&) { return tick > 10500 ? -1 : tick; };
+  const std::string other = retimed(std::regex_replace(run.log, joined, ""), head);
+  EXPECT_EQ(broken_in(judged({run.capture, other})), "J5-SUCCESS");
+  std::string changed;
+  int packets = 0;
+  const auto shortened = [&](Packet& packet) {
+    constexpr std::size_t kLengthOffset = 5;  // Of the header of a serial packet (TEP 113).
+    if (packet.framing == Framing::kRadio || ++packets != 20) return 0;
+    changed.assign(reinterpret_cast<const char*>(packet.bytes.data()), packet.bytes.size());
+    changed[kLengthOffset] = static_cast<char>(changed[kLengthOffset] - 1);
+    packet.bytes = Bytes(reinterpret_cast<const std::uint8_t*>(changed.data()), changed.size());
+    return 0;
+  };
+  const auto early = [&](int tick, const std::string&) { return tick > 5000 ? -1 : tick; };
+  const check::Run both = read_apart(run.capture, 1, shortened, {retimed(run.log, early)});
+  EXPECT_EQ(broken_in(judge(both, complete())), "WIRE-AM-LENGTH");
+}
+
 TEST(AlignLogs, AJoinThatFailsAtOnceIsFound) {
   const Recorded run = recorded("timeline");
   const std::regex joined("(m2 +> +app +joined\\().*(\\))");
