@@ -252,6 +252,9 @@ class Run {
     std::unique_ptr<Reader> reader = make_reader(reading.format, reading.options);
     source_.format = format_name(reading.format);
     pump(file, *reader, size);
+    const bool capture =
+        reading.format == InputFormat::kPcap || reading.format == InputFormat::kPcapng;
+    if (capture && source_.number == 0 && !options_.follow) remark("holds no packets");
     say_what_is_left_out(*reader);
   }
 
