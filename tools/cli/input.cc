@@ -537,6 +537,10 @@ const reflect::Type* chosen_message(const InputOptions& options,
     throw UsageError("--as", "takes hex text or a binary file, not " + options.format);
   }
   const reflect::Type* type = reflect::find_type(protocol, options.as_message);
+  if (type && type->param_count != 0) {
+    throw UsageError("--as",
+                     options.as_message + " has parameters, which the type around it gives");
+  }
   if (type) return type;
   std::vector<std::string> names;
   for (int i = 0; i < protocol.type_count; ++i) names.emplace_back(protocol.types[i]->name);
