@@ -32,7 +32,9 @@ std::uint32_t index32(std::size_t n) { return static_cast<std::uint32_t>(n); }
 
 // Returns the load of the one number that the expression is; null if it is more.
 const reflect::ExprStep* lone_step(const Expr& expr) {
-  return expr.count == 1 && expr.steps[0].op != Op::kConst ? &expr.steps[0] : nullptr;
+  const bool is_load =
+      expr.count == 1 && expr.steps[0].op >= Op::kLoadU8 && expr.steps[0].op <= Op::kLoadLe32;
+  return is_load ? &expr.steps[0] : nullptr;
 }
 
 std::uint32_t element_bytes(const Field& f) {
@@ -65,6 +67,7 @@ class FrameWriter {
     std::size_t base;
     std::size_t end;  ///< None of its bytes is after this.
     bool hard;
+    const std::int64_t* params;  ///< Those of the type, null if it has none.
   };
 
   std::size_t size() const { return draft_.bytes.size(); }
@@ -109,11 +112,12 @@ class FrameWriter {
   }
 
   std::int64_t value_of(const Expr& expr, const Place& place) const {
-    if (!expr.floats) return reflect::evaluate(expr, from(place.base));
-    return reflect::evaluate_floating(expr, from(place.base), [&](int index) -> std::size_t {
+    if (!expr.floats) return reflect::evaluate(expr, from(place.base), place.params);
+    const auto start_of = [&](int index) -> std::size_t {
       const std::uint32_t part = part_of(index, place);
       return part == kNone ? reflect::kNowhere : draft_.parts[part].at - place.base;
-    });
+    };
+    return reflect::evaluate_floating(expr, from(place.base), start_of, place.params);
   }
 
   /// Returns whether the expression is the number `f` alone, which comes next.
@@ -124,11 +128,23 @@ class FrameWriter {
     return load->value == static_cast<std::int32_t>(size() - place.base);
   }
 
-  bool structure(const Type& type, std::uint32_t parent, std::size_t room, bool hard) {
+  /// Writes a structure into another one, which says what its parameters are.
+  bool call(const Type& type, const reflect::Argument* arguments, std::size_t room,
+            const Place& place) {
+    std::int64_t values[reflect::kMaxParams] = {};
+    for (int i = 0; arguments && i < type.param_count; ++i) {
+      values[i] = value_of(arguments[i].value, place);
+      if (values[i] < arguments[i].min || values[i] > arguments[i].max) return false;
+    }
+    return structure(type, place.scope, room, place.hard, values);
+  }
+
+  bool structure(const Type& type, std::uint32_t parent, std::size_t room, bool hard,
+                 const std::int64_t* params = nullptr) {
     const std::size_t base = size();
     draft_.scopes.push_back({parent, index32(base), kNone, &type});
     const std::size_t end = base + std::min<std::size_t>(room, type.max_size);
-    const Place place{type, index32(draft_.scopes.size() - 1), base, end, hard};
+    const Place place{type, index32(draft_.scopes.size() - 1), base, end, hard, params};
     for (std::uint16_t i = 0; i < type.field_count; ++i) {
       const Field& f = type.fields[i];
       if (f.condition.count && !value_of(f.condition, place)) continue;
@@ -209,6 +225,7 @@ class FrameWriter {
   // Arrays and bytes.
 
   bool array(const Field& f, const Place& place) {
+    if (f.repeat == Repeat::kUntil) return until(f, place);
     const std::size_t width = element_bytes(f);
     if (f.kind == Kind::kStruct && f.type->min_size != width) return varying(f, place);
     const std::uint32_t part = add_part(PartKind::kArray, f, place);
@@ -239,7 +256,7 @@ class FrameWriter {
         continue;
       }
       const std::size_t begin = size();
-      if (!structure(*f.type, place.scope, width, place.hard) || size() != begin + width) {
+      if (!call(*f.type, f.arguments, width, place) || size() != begin + width) {
         return false;
       }
     }
@@ -254,7 +271,7 @@ class FrameWriter {
     for (std::int64_t i = 0; i < count; ++i) {
       const std::size_t begin = size();
       if (!counted) draft_.ends.push_back(index32(begin));
-      const bool good = structure(*f.type, place.scope, left(place), place.hard);
+      const bool good = call(*f.type, f.arguments, left(place), place);
       if (!good || (size() == begin && i > kMostEmpty)) return false;
     }
     if (!counted) {  // Bytes behind the last element would be one more.
@@ -266,6 +283,26 @@ class FrameWriter {
     return count >= 0;
   }
 
+  // Writes elements up to one for which the condition holds; chance may not come upon such a one.
+  bool until(const Field& f, const Place& place) {
+    const bool numbers = f.kind != Kind::kStruct;
+    const Type& type = numbers ? place.type : *f.type;
+    const std::uint32_t part = add_part(PartKind::kArray, f, place);
+    for (bool done = false; !done;) {
+      const std::size_t begin = size();
+      const std::uint32_t scope = index32(draft_.scopes.size());
+      if (numbers && left(place) < f.width_bytes) return false;
+      if (numbers) {
+        put(f, random_.chance(0.3) ? 0 : allowed_value(f, random_));
+      } else if (!call(type, f.arguments, left(place), place) || size() == begin) {
+        return false;
+      }
+      done = value_of(f.until, {type, scope, begin, size(), place.hard, place.params}) != 0;
+    }
+    close_part(part);
+    return true;
+  }
+
   void noise(std::size_t bytes) {
     for (std::size_t i = 0; i < bytes; ++i) draft_.bytes.push_back(any_byte(random_));
   }
@@ -273,14 +310,17 @@ class FrameWriter {
   // Writes characters in all the bytes, or fewer and their end.
   void text(const Field& f, std::size_t bytes) {
     const bool ends = f.extent == Extent::kTerminated;
+    const std::size_t all = bytes / f.text->unit;
+    const std::size_t begin = size();
     std::string content;
-    for (std::size_t i = 0, most = bytes - ends - random_.below(bytes - ends + 1); i < most; ++i) {
+    for (std::size_t i = 0, most = all - ends - random_.below(all - ends + 1); i < most; ++i) {
       const auto c = static_cast<char>(random_.between(' ', '~'));
       if (c != f.text->terminator && c != f.text->padding) content += c;
     }
     const bool fills = f.text->terminator < 0 && f.text->padding < 0;
-    if (fills) content.resize(bytes, '.');
+    if (fills) content.resize(all, '.');
     reflect::append_text(f, content, ends ? std::nullopt : std::optional(bytes), draft_.bytes);
+    if (!ends) draft_.bytes.resize(begin + bytes);  // Half a character may be left.
   }
 
   bool opaque(const Field& f, const Place& place) {
@@ -292,8 +332,9 @@ class FrameWriter {
       bytes = static_cast<std::size_t>(wanted);
       draft_.parts[part].measure = measure_of(f.size, place);
     } else if (f.extent == Extent::kTerminated) {
-      if (left(place) == 0) return false;
-      bytes = random_.below(std::min<std::size_t>(left(place), 24)) + 1;
+      const std::size_t unit = f.text->unit;
+      if (left(place) < unit) return false;
+      bytes = unit * (random_.below(std::min<std::size_t>(left(place), 24) / unit) + 1);
     } else {
       draft_.parts[part].open = true;
       if (random_.chance(0.1)) bytes = left(place);
@@ -307,32 +348,36 @@ class FrameWriter {
 
   bool nested(const Field& f, const Place& place) {
     const Type* type = f.type;
+    const reflect::Argument* arguments = f.arguments;
     if (f.choice) {
-      type = reflect::choose(*f.choice, value_of(f.choice->key, place));
+      const reflect::Chosen chosen =
+          reflect::choose_with(*f.choice, value_of(f.choice->key, place));
+      type = chosen.type;
+      arguments = chosen.arguments;
       // A route that chooses leads to a message.
       if (!type) return route_.choice_count == 0 && (f.extent == Extent::kOwn || opaque(f, place));
       draft_.path.push_back(type);
     }
     if (same_message(type, route_.type) && size() == route_.offset) reached_ = true;
-    if (f.extent == Extent::kOwn) return structure(*type, place.scope, left(place), place.hard);
+    if (f.extent == Extent::kOwn) return call(*type, arguments, left(place), place);
     const std::uint32_t part = add_part(PartKind::kRoom, f, place);
-    if (f.extent == Extent::kSize) return sized(f, *type, part, place);
+    if (f.extent == Extent::kSize) return sized(f, {type, arguments}, part, place);
     draft_.parts[part].open = true;
-    if (!structure(*type, place.scope, left(place), place.hard)) return false;
+    if (!call(*type, arguments, left(place), place)) return false;
     if (!takes_all(part + 1)) stale(left(place));
     close_part(part);
     return true;
   }
 
-  bool sized(const Field& f, const Type& type, std::uint32_t part, const Place& place) {
+  bool sized(const Field& f, reflect::Chosen inner, std::uint32_t part, const Place& place) {
     const std::uint32_t measure = measure_of(f.size, place);
-    if (measure == kNone) return fixed(f, type, part, place);
+    if (measure == kNone) return fixed(f, inner, part, place);
     const Field& number = *draft_.parts[measure].field;
     const Span span = allowed(number);
     const std::size_t begin = size();
     const std::size_t room = std::min(left(place), static_cast<std::size_t>(span.max));
     const std::size_t scope = draft_.scopes.size();
-    if (!structure(type, place.scope, room, place.hard)) return false;
+    if (!call(*inner.type, inner.arguments, room, place)) return false;
     if (!takes_all(part + 1)) {
       stale(begin + room - size());
       const auto least = static_cast<std::size_t>(std::max<std::int64_t>(span.min, 0));
@@ -348,12 +393,12 @@ class FrameWriter {
   }
 
   // Fills the bytes that something other than one number says the structure has.
-  bool fixed(const Field& f, const Type& type, std::uint32_t part, const Place& place) {
+  bool fixed(const Field& f, reflect::Chosen inner, std::uint32_t part, const Place& place) {
     const std::int64_t bytes = value_of(f.size, place);
     if (bytes < 0 || static_cast<std::size_t>(bytes) > left(place)) return false;
     const std::size_t end = size() + static_cast<std::size_t>(bytes);
     const std::size_t scope = draft_.scopes.size();
-    if (!structure(type, place.scope, end - size(), place.hard)) return false;
+    if (!call(*inner.type, inner.arguments, end - size(), place)) return false;
     noise(end - size());
     draft_.scopes[scope].end = index32(size());
     close_part(part);

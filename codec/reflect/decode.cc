@@ -38,87 +38,15 @@ std::int64_t load_number(const Field& field, const std::uint8_t* at) {
   return field.kind == Kind::kBits ? load_bits(field, at) : load(field, at);
 }
 
-namespace {
-
-RUBRIC_INLINE std::int64_t load_step(const ExprStep& step, Bytes structure) {
-  const auto at = static_cast<std::size_t>(step.value);
-  const std::uint8_t* p = structure.data() + at;
-  const std::size_t size = structure.size();
-  switch (step.op) {
-    case Op::kLoadU8: return at + 1 <= size ? load_u8(p) : 0;
-    case Op::kLoadBe16: return at + 2 <= size ? load_be16(p) : 0;
-    case Op::kLoadLe16: return at + 2 <= size ? load_le16(p) : 0;
-    case Op::kLoadBe32: return at + 4 <= size ? load_be32(p) : 0;
-    default: return at + 4 <= size ? load_le32(p) : 0;
-  }
-}
-
-// Division as Kaitai Struct defines it: towards negative infinity.
-std::int64_t floor_div(std::int64_t a, std::int64_t b) {
-  if (b == 0) return 0;
-  const std::int64_t q = a / b;
-  return q - ((a % b != 0) && ((a < 0) != (b < 0)));
-}
-
-std::int64_t apply(Op op, std::int64_t a, std::int64_t b) {
-  switch (op) {
-    case Op::kAdd: return a + b;
-    case Op::kSub: return a - b;
-    case Op::kMul: return a * b;
-    case Op::kDiv: return floor_div(a, b);
-    case Op::kMod: return b == 0 ? 0 : a - floor_div(a, b) * b;
-    case Op::kEq: return a == b;
-    case Op::kNe: return a != b;
-    case Op::kLt: return a < b;
-    case Op::kLe: return a <= b;
-    case Op::kGt: return a > b;
-    case Op::kGe: return a >= b;
-    case Op::kAnd: return a && b;
-    case Op::kOr: return a || b;
-    default: return 0;
-  }
-}
-
-Op step_of(const Expr& expr, int i) { return expr.steps[i].op; }
-
-}  // namespace
-
-std::int64_t evaluate(const Expr& expr, Bytes structure) {
-  if (expr.count == 1) {  // By far the most frequent: one load.
-    const ExprStep& only = expr.steps[0];
-    return only.op == Op::kConst ? only.value : load_step(only, structure);
-  }
-  std::int64_t stack[kMaxExprDepth];
-  int top = 0;
-  for (int i = 0; i < expr.count; ++i) {
-    const ExprStep& step = expr.steps[i];
-    if (step.op == Op::kConst) {
-      stack[top++] = step.value;
-    } else if (step.op <= Op::kLoadLe32) {
-      std::int64_t value = load_step(step, structure);
-      // Most conditions are "field == constant".
-      if (i + 2 < expr.count && step_of(expr, i + 1) == Op::kConst &&
-          step_of(expr, i + 2) == Op::kEq) {
-        value = value == expr.steps[i + 1].value;
-        i += 2;
-      }
-      stack[top++] = value;
-    } else if (step.op == Op::kNot) {
-      stack[top - 1] = !stack[top - 1];
-    } else {
-      --top;
-      stack[top - 1] = apply(step.op, stack[top - 1], stack[top]);
-    }
-  }
-  return stack[0];
-}
-
-const Type* choose(const Switch& choice, std::int64_t key) {
+Chosen choose_with(const Switch& choice, std::int64_t key) {
   const SwitchCase* end = choice.cases + choice.count;
   const SwitchCase* found = std::lower_bound(
       choice.cases, end, key, [](const SwitchCase& c, std::int64_t k) { return c.key < k; });
-  return found != end && found->key == key ? found->type : choice.otherwise;
+  if (found != end && found->key == key) return {found->type, found->arguments};
+  return {choice.otherwise, choice.otherwise_arguments};
 }
+
+const Type* choose(const Switch& choice, std::int64_t key) { return choose_with(choice, key).type; }
 
 void Decoded::clear(Bytes frame) {
   bytes = frame;
@@ -214,18 +142,19 @@ class Decoder {
   /// Returns the value of an expression of the open structure, which begins at `base`.
   RUBRIC_INLINE std::int64_t value_of(const Expr& expr, std::uint32_t base,
                                       std::uint32_t limit) const {
-    if (__builtin_expect(expr.floats, 0)) return floating(expr, base, limit);
-    return evaluate(expr, from(base, limit));
+    if (__builtin_expect(expr.floats, 0)) return floating(expr, base, limit, open_);
+    return evaluate(expr, from(base, limit), params_);
   }
   __attribute__((noinline)) std::int64_t floating(const Expr& expr, std::uint32_t base,
-                                                  std::uint32_t limit) const {
-    const Field* const fields = nodes_[open_].type->fields;
-    return evaluate_floating(expr, from(base, limit), [&](int index) -> std::size_t {
-      for (std::size_t i = open_ + 1; i < count_; i = nodes_[i].end) {
+                                                  std::uint32_t limit, std::size_t node) const {
+    const Field* const fields = nodes_[node].type->fields;
+    const auto start_of = [&](int index) -> std::size_t {
+      for (std::size_t i = node + 1; i < count_; i = nodes_[i].end) {
         if (nodes_[i].field == &fields[index]) return nodes_[i].offset - base;
       }
       return kNowhere;
-    });
+    };
+    return evaluate_floating(expr, from(base, limit), start_of, params_);
   }
 
   /// Decodes the fields of `type` in [base, limit) and closes the node.
@@ -311,12 +240,11 @@ class Decoder {
   /// Decodes bytes with characters or a terminator, which lie before `end`.
   __attribute__((noinline)) bool text(const Field& f, std::uint32_t& at, std::uint32_t end) {
     if (f.extent == Extent::kTerminated) {
-      const std::uint8_t* const bytes = out_.bytes.data();
-      const std::uint8_t* const found = std::find(bytes + at, bytes + end, f.text->terminator);
-      if (found == bytes + end && !f.text->may_lack_its_end) {
-        return truncated(f, at, end, std::int64_t{end - at} + 1);
+      const std::size_t found = terminator_at(*f.text, from(at, end));
+      if (found == end - at && !f.text->may_lack_its_end) {
+        return truncated(f, at, end, std::int64_t{end - at} + f.text->unit);
       }
-      end = static_cast<std::uint32_t>(found - bytes) + (found != bytes + end);
+      if (found != end - at) end = at + static_cast<std::uint32_t>(found) + f.text->unit;
     }
     push(NodeKind::kBytes, &f, at, end - at);
     const Bytes content = text_content(f, from(at, end));
@@ -338,9 +266,12 @@ class Decoder {
   bool nested(const Field& f, std::uint32_t base, std::uint32_t& at, std::uint32_t end,
               std::uint32_t limit) {
     const Type* type = f.type;
+    const Argument* arguments = f.arguments;
     if (f.choice) {
       const std::int64_t key = value_of(f.choice->key, base, limit);
-      type = choose(*f.choice, key);
+      const Chosen chosen = choose_with(*f.choice, key);
+      type = chosen.type;
+      arguments = chosen.arguments;
       if (!type && f.extent == Extent::kOwn) {
         if (end > at) push_note({NoteKind::kUnknownMessage, at, &f, nullptr, key});
         return true;
@@ -355,7 +286,7 @@ class Decoder {
       push_path(*type);
     }
     const std::size_t index = count_;
-    if (!structure(*type, &f, at, end)) return false;
+    if (!call(*type, arguments, f, {base, limit}, at, end)) return false;
     const std::uint32_t used = at + nodes_[index].size;
     if (f.extent == Extent::kOwn) {
       at = used;
@@ -366,12 +297,40 @@ class Decoder {
     return true;
   }
 
+  /// The bytes of the open structure.
+  struct Around {
+    std::uint32_t base;
+    std::uint32_t limit;
+  };
+
+  /// Decodes a structure in [at, end) within the open one, which says what its parameters are.
+  RUBRIC_INLINE bool call(const Type& type, const Argument* arguments, const Field& f,
+                          Around around, std::uint32_t at, std::uint32_t end) {
+    if (__builtin_expect(arguments == nullptr, 1)) return structure(type, &f, at, end);
+    return call_with(type, arguments, f, around, at, end);
+  }
+  __attribute__((noinline)) bool call_with(const Type& type, const Argument* arguments,
+                                           const Field& f, Around around, std::uint32_t at,
+                                           std::uint32_t end) {
+    std::int64_t values[kMaxParams];
+    for (int i = 0; i < type.param_count; ++i) {
+      values[i] = value_of(arguments[i].value, around.base, around.limit);
+      if (values[i] >= arguments[i].min && values[i] <= arguments[i].max) continue;
+      push(NodeKind::kStruct, &f, at, 0).type = &type;
+      return set_error(Fault::kTruncated, end, f, values[i]);
+    }
+    const std::int64_t* const outer = std::exchange(params_, values);
+    const bool good = structure(type, &f, at, end);
+    params_ = outer;
+    return good;
+  }
+
   /// Decodes a message of another carrier; returns true if there is one for the key, opaque if it
   /// does not fit.
   bool radio_only(const Field& f, std::int64_t key, std::uint32_t& at, std::uint32_t end) {
     const Type* type = choose(*more_, key);
     if (!type) return false;
-    if (fits(f, *type, at, end)) {
+    if (fits(f, {type, nullptr}, {}, at, end)) {
       push_note({NoteKind::kRadioOnly, at, &f, type, key});
     } else {
       push_note({NoteKind::kDoesNotFit, at, &f, type, key});
@@ -382,6 +341,7 @@ class Decoder {
   }
 
   bool array(const Field& f, std::uint32_t base, std::uint32_t& at, std::uint32_t limit) {
+    if (__builtin_expect(f.repeat == Repeat::kUntil, 0)) return until(f, base, at, limit);
     const std::uint32_t width = f.kind == Kind::kStruct ? f.type->max_size : f.width_bytes;
     if (f.kind == Kind::kStruct && (f.type->min_size != width || width == 0)) {
       return varying(f, base, at, limit);
@@ -405,7 +365,7 @@ class Decoder {
     push(NodeKind::kStructArray, &f, at, size).count = static_cast<std::uint32_t>(count);
     bool good = true;
     for (std::int64_t i = 0; good && i < count; ++i, at += width) {
-      good = structure(*f.type, &f, at, at + width);
+      good = call(*f.type, f.arguments, f, {base, limit}, at, at + width);
     }
     nodes_[index].end = static_cast<std::uint32_t>(count_);
     return good;
@@ -425,11 +385,44 @@ class Decoder {
     std::uint32_t elements = 0;
     while (good && elements < count && !(to_end && at == limit)) {
       const std::size_t element = count_;
-      good = structure(*f.type, &f, at, limit);
+      good = call(*f.type, f.arguments, f, {base, limit}, at, limit);
       at += nodes_[element].size;
       ++elements;
       // Elements without a byte would never come to the end.
       if (nodes_[element].size == 0 && (to_end || elements > kMostEmpty)) break;
+    }
+    Node& node = nodes_[index];
+    node.size = at - begin;
+    node.count = elements;
+    node.end = static_cast<std::uint32_t>(count_);
+    return good;
+  }
+
+  /// Decodes elements up to the first for which the condition holds.
+  __attribute__((noinline)) bool until(const Field& f, std::uint32_t base, std::uint32_t& at,
+                                       std::uint32_t limit) {
+    const bool numbers = f.kind != Kind::kStruct;
+    const std::size_t index = count_;
+    const std::uint32_t begin = at;
+    push(numbers ? NodeKind::kNumberArray : NodeKind::kStructArray, &f, at, 0);
+    std::uint32_t elements = 0;
+    bool good = true;
+    for (bool done = false; good && !done; ++elements) {
+      const std::size_t element = count_;
+      const std::uint32_t start = at;
+      if (!numbers) {
+        good = call(*f.type, f.arguments, f, {base, limit}, at, limit);
+        at += nodes_[element].size;
+      } else if (limit - at < f.width_bytes) {
+        good = set_error(Fault::kTruncated, limit, f, f.width_bytes);
+        break;
+      } else {
+        at += f.width_bytes;
+      }
+      done = good && (f.until.floats ? floating(f.until, start, at, element)
+                                     : evaluate(f.until, from(start, at), params_));
+      // Elements without a byte would never come to their end.
+      if (good && !done && at == start) good = set_error(Fault::kTruncated, at, f, 1);
     }
     Node& node = nodes_[index];
     node.size = at - begin;
@@ -447,17 +440,16 @@ class Decoder {
       const Interpretation& candidate = type.interpretations[k];
       if (candidate.overlays != i) continue;
       const Field& f = candidate.field;
-      const Bytes whole = from(base, limit);
-      if (f.condition.count && !evaluate(f.condition, whole)) continue;
+      if (f.condition.count && !value_of(f.condition, base, limit)) continue;
       about = &f;
-      const Type* chosen = f.type;
+      Chosen chosen{f.type, f.arguments};
       if (f.choice) {
         if (at == limit) continue;  // The key is the first byte, and there is none.
-        chosen = choose(*f.choice, evaluate(f.choice->key, whole));
+        chosen = choose_with(*f.choice, value_of(f.choice->key, base, limit));
       }
-      if (!chosen) continue;
-      if (fits(f, *chosen, at, limit)) return true;
-      unfit = chosen;
+      if (!chosen.type) continue;
+      if (fits(f, chosen, {base, limit}, at, limit)) return true;
+      unfit = chosen.type;
     }
     if (at == limit) return false;  // Nothing there, nothing to remark.
     const NoteKind kind = unfit ? NoteKind::kDoesNotFit : NoteKind::kUnknownMessage;
@@ -465,13 +457,13 @@ class Decoder {
     return false;
   }
 
-  bool fits(const Field& f, const Type& chosen, std::uint32_t at, std::uint32_t limit) {
+  bool fits(const Field& f, Chosen chosen, Around around, std::uint32_t at, std::uint32_t limit) {
     const std::size_t nodes = count_;
     const std::size_t notes = out_.note_count_;
     const std::size_t path = out_.path_count_;
     const std::size_t stale = out_.stale_count_;
-    push_path(chosen);
-    if (structure(chosen, &f, at, limit)) {
+    push_path(*chosen.type);
+    if (call(*chosen.type, chosen.arguments, f, around, at, limit)) {
       const std::uint32_t used = at + nodes_[nodes].size;
       if (used < limit) push_stale(used, limit);
       return true;
@@ -489,6 +481,7 @@ class Decoder {
   Node* nodes_ = nullptr;
   std::size_t count_ = 0;  // Number of nodes; set in `out_` at the end.
   std::size_t open_ = 0;   // The node of the innermost structure that is not closed yet.
+  const std::int64_t* params_ = nullptr;  // Of that structure, if its type has some.
 };
 
 void decode(const Type& type, Bytes bytes, Tail tail, bool is_message, Decoded& out,

@@ -120,22 +120,31 @@ void decode(const Type& type, Bytes bytes, Tail tail, bool is_message, Decoded& 
             const Switch* more = nullptr);
 
 /// Returns the value of an expression over the structure that begins at `base`, whose loads lie
-/// within `bytes` (the spec compiler proves it, loads beyond the end give 0).
-std::int64_t evaluate(const Expr& expr, Bytes structure);
+/// within `bytes` (the spec compiler proves it, loads beyond the end give 0). `params`: what the
+/// parameters of its type are, if it has some; without them they are 0.
+std::int64_t evaluate(const Expr& expr, Bytes structure, const std::int64_t* params = nullptr);
 
 /// Returns the same where loads may count from fields: `start_of` returns where the field of an
 /// index begins in the structure, kNowhere if it is not there.
 inline constexpr std::size_t kNowhere = INT32_MAX / 2;
 template <class StartOf>
-std::int64_t evaluate_floating(const Expr& expr, Bytes structure, const StartOf& start_of) {
+std::int64_t evaluate_floating(const Expr& expr, Bytes structure, const StartOf& start_of,
+                               const std::int64_t* params = nullptr) {
   ExprStep steps[UINT8_MAX] = {};
   std::copy_n(expr.steps, expr.count, steps);
   for (int i = 0; i < expr.count; ++i) {
     const std::uint16_t from = std::exchange(steps[i].from, std::uint16_t{0});
     if (from != 0) steps[i].value += static_cast<std::int32_t>(start_of(from - 1));
   }
-  return evaluate({steps, expr.count}, structure);
+  return evaluate({steps, expr.count}, structure, params);
 }
+
+/// Returns what the switch chooses for the key, its type null for opaque.
+struct Chosen {
+  const Type* type;
+  const Argument* arguments;
+};
+Chosen choose_with(const Switch& choice, std::int64_t key);
 
 /// Returns the type that the switch chooses for the key; null for opaque.
 const Type* choose(const Switch& choice, std::int64_t key);

@@ -6,101 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "codec/reflect/encode_measures.h"
 #include "codec/reflect/encode_number.h"
 #include "codec/reflect/schema.h"
 #include "codec/reflect/text_field.h"
 
 namespace rubric::reflect {
 namespace {
-
-// Numbers of an encoding that give the size of something that follows. They may be missing: then
-// they are filled in once the content that they measure is written.
-
-/// A number that an expression for a size or a count reads.
-struct Measure {
-  std::size_t offset = 0;        ///< In the output.
-  const Field* field = nullptr;  ///< Null until its bytes are written.
-  std::string path;
-  bool missing = false;  ///< Not given, and not filled in yet.
-};
-
-/// A structure that is being written.
-struct Part {
-  std::size_t base = 0;             ///< Where it begins in the output.
-  std::vector<std::size_t> starts;  ///< Where its fields begin, up to the present one.
-
-  /// Returns where a load reads in the output.
-  std::size_t place(const ExprStep& load) const {
-    const std::size_t from = load.from == 0                   ? base
-                             : load.from - 1U < starts.size() ? starts[load.from - 1U]
-                                                              : kNowhere;
-    return from + static_cast<std::size_t>(load.value);
-  }
-};
-
-/// The measures met so far. Copyable, so that an attempt can be taken back.
-class Measures {
- public:
-  /// Notes which measures the sizes and counts of a structure of this type read: from its begin on
-  /// (0), or from that of field `from - 1` on, which is the present one.
-  void expect(const Type& type, const Part& in, std::uint16_t from) {
-    for (int i = 0; i < type.field_count; ++i) {
-      for (const Expr* expr : {&type.fields[i].size, &type.fields[i].count}) {
-        const ExprStep* load = only_load(*expr);
-        if (!load || load->from != from || find(in.place(*load))) continue;
-        all_.push_back({in.place(*load), nullptr, {}, false});
-      }
-    }
-  }
-
-  /// Returns the measure at this offset; null if the number there measures nothing.
-  Measure* find(std::size_t offset) {
-    for (Measure& measure : all_) {
-      if (measure.offset == offset) return &measure;
-    }
-    return nullptr;
-  }
-
-  /// Returns the measure that `expr` of a structure reads; null unless it is a single one.
-  Measure* of(const Expr& expr, const Part& in) {
-    const ExprStep* load = only_load(expr);
-    return load ? find(in.place(*load)) : nullptr;
-  }
-
-  /// Returns a measure that `expr` reads and that is missing; null if there is none.
-  const Measure* missing_in(const Expr& expr, const Part& in) {
-    for (int i = 0; i < expr.count; ++i) {
-      if (!is_load(expr.steps[i])) continue;
-      const Measure* measure = find(in.place(expr.steps[i]));
-      if (measure && measure->missing) return measure;
-    }
-    return nullptr;
-  }
-
-  /// Returns a measure that nothing filled in; null if there is none.
-  const Measure* first_missing() const {
-    for (const Measure& measure : all_) {
-      if (measure.missing) return &measure;
-    }
-    return nullptr;
-  }
-
- private:
-  static bool is_load(const ExprStep& step) {
-    return step.op >= Op::kLoadU8 && step.op <= Op::kLoadLe32;
-  }
-  static const ExprStep* only_load(const Expr& expr) {
-    const ExprStep* found = nullptr;
-    for (int i = 0; i < expr.count; ++i) {
-      if (!is_load(expr.steps[i])) continue;
-      if (found) return nullptr;
-      found = &expr.steps[i];
-    }
-    return found;
-  }
-
-  std::vector<Measure> all_;
-};
 
 using std::to_string;
 
@@ -122,7 +34,7 @@ class Encoder {
 
   void run(const Type& type, const Value& fields, Tail tail) {
     open_parts_ = tail == Tail::kStale ? 1 : 0;
-    structure(type, fields, std::nullopt);
+    structure(type, {}, fields, std::nullopt);
     if (tail == Tail::kStale) append_stale(stale_.size() - stale_used_);
     if (const Measure* measure = measures_.first_missing()) {
       throw EncodeError(measure->path, "is missing: expected " + expectation(*measure->field),
@@ -145,11 +57,26 @@ class Encoder {
   Bytes from(std::size_t base) const { return Bytes(out_.data() + base, out_.size() - base); }
 
   std::int64_t value_of(const Expr& expr, const Part& in) const {
-    if (!expr.floats) return evaluate(expr, from(in.base));
-    return evaluate_floating(expr, from(in.base), [&](int index) -> std::size_t {
+    if (!expr.floats) return evaluate(expr, from(in.base), in.params.data());
+    const auto start_of = [&](int index) -> std::size_t {
       const auto i = static_cast<std::size_t>(index);
       return i < in.starts.size() ? in.starts[i] - in.base : kNowhere;
-    });
+    };
+    return evaluate_floating(expr, from(in.base), start_of, in.params.data());
+  }
+
+  /// Returns what the parameters of a type are for one use of it.
+  std::vector<std::int64_t> values_of(const Type& type, const Argument* arguments, const Field& f,
+                                      const Part& in) {
+    std::vector<std::int64_t> out;
+    for (int i = 0; arguments && i < type.param_count; ++i) {
+      require_given(arguments[i].value, in);
+      out.push_back(value_of(arguments[i].value, in));
+      if (out.back() >= arguments[i].min && out.back() <= arguments[i].max) continue;
+      fail(std::string(type.params[i]) + " of " + type.name + " comes to " + to_string(out.back()),
+           f.requirement);
+    }
+    return out;
   }
 
   /// Returns whether expressions of the type read fields at places that vary.
@@ -220,15 +147,17 @@ class Encoder {
 
   // Structures.
 
-  void structure(const Type& type, const Value& object, Limit limit) {
+  void structure(const Type& type, std::vector<std::int64_t> params, const Value& object,
+                 Limit limit) {
     if (!object.is(Value::Kind::kObject)) {
       fail("expected an object with the fields of " + std::string(type.name) + ", given " +
                value_text(object),
            type.requirement);
     }
-    Part in{out_.size(), {}};
+    Part in{out_.size(), {}, std::move(params)};
     measures_.expect(type, in, 0);
-    const bool floats = has_floating(type);
+    const bool floats = has_floating(type) || wants_starts_;
+    wants_starts_ = false;
     std::size_t used = 0;  // Members of the object that were taken.
     for (std::uint16_t i = 0; i < type.field_count; ++i) {
       const Field& f = type.fields[i];
@@ -249,6 +178,7 @@ class Encoder {
       path_.resize(path_size);
     }
     if (used != object.keys.size()) unknown_member(type, object, in);
+    starts_ = std::move(in.starts);
   }
 
   std::size_t push_path(std::string_view name) {
@@ -391,11 +321,8 @@ class Encoder {
     const std::size_t size = out_.size() - at;
     if (f.extent == Extent::kTerminated) {
       // What comes after a terminator would be read as the next field.
-      const auto begin = out_.begin() + static_cast<std::ptrdiff_t>(at);
-      const auto end = std::find(begin, out_.end(), f.text->terminator);
-      if (end + (end != out_.end()) == out_.end() &&
-          (f.text->may_lack_its_end || end != out_.end()))
-        return;
+      const std::size_t end = terminator_at(*f.text, from(at));
+      if (end == size ? f.text->may_lack_its_end : end + f.text->unit == size) return;
       fail("expected one byte " + to_string(f.text->terminator) + ", at the end", f.requirement);
     }
     if (f.extent == Extent::kSize) return settle(f.size, in, size, bytes_text(size), f);
@@ -416,12 +343,18 @@ class Encoder {
     const std::size_t path_size = path_.size();
     for (std::size_t i = 0; i < count; ++i) {
       path_ += '[' + to_string(i) + ']';
+      const std::size_t begin = out_.size();
+      wants_starts_ = f.until.floats;
       if (f.kind == Kind::kStruct) {
-        structure(*f.type, value.items[i], limit);
+        structure(*f.type, values_of(*f.type, f.arguments, f, in), value.items[i], limit);
       } else {
         number(f, Value::of_object(), &value.items[i]);
       }
       path_.resize(path_size);
+      if (f.repeat == Repeat::kUntil) check_until(f, {begin, starts_, in.params}, i, count);
+    }
+    if (f.repeat == Repeat::kUntil && count == 0) {
+      fail("expected an element or more", f.requirement);
     }
     if (f.repeat == Repeat::kToEnd && limit && out_.size() != *limit) {
       fail("its " + to_string(count) + " elements end at byte " + to_string(out_.size() - start_) +
@@ -430,23 +363,39 @@ class Encoder {
     }
   }
 
+  /// Checks that the last element ends the list, and that no other does.
+  void check_until(const Field& f, const Part& element, std::size_t index, std::size_t count) {
+    require_given(f.until, element);
+    const bool ends = value_of(f.until, element) != 0;
+    if (ends == (index + 1 == count)) return;
+    fail("element " + to_string(index) +
+             (ends ? " ends the list, and others follow"
+                   : " is the last, and does not end the list"),
+         f.requirement);
+  }
+
   void nested(const Field& f, const Value& value, const Part& in, Limit limit) {
     const Type* type = f.type;
+    const Argument* arguments = f.arguments;
     if (f.choice) {
       require_given(f.choice->key, in);
       const std::int64_t key = value_of(f.choice->key, in);
-      type = choose(*f.choice, key);
+      const Chosen chosen = choose_with(*f.choice, key);
+      type = chosen.type;
+      arguments = chosen.arguments;
       if (!type && more_ && in.base == start_ && value.is(Value::Kind::kObject)) {
         type = choose(*more_, key);
       }
       if (!type) return opaque(f, &value, in, limit);
     }
-    if (f.extent == Extent::kOwn) return structure(*type, value, limit);
-    part(f, *type, value, in, limit);
+    if (f.extent == Extent::kOwn) {
+      return structure(*type, values_of(*type, arguments, f, in), value, limit);
+    }
+    part(f, {type, arguments}, value, in, limit);
   }
 
   /// Encodes a structure whose size is given elsewhere; stale bytes may follow its content.
-  void part(const Field& f, const Type& type, const Value& value, const Part& in, Limit limit) {
+  void part(const Field& f, Chosen chosen, const Value& value, const Part& in, Limit limit) {
     const std::size_t at = out_.size();
     Limit end = limit;
     if (f.extent == Extent::kSize) {
@@ -459,7 +408,7 @@ class Encoder {
       }
     }
     ++open_parts_;
-    structure(type, value, end);
+    structure(*chosen.type, values_of(*chosen.type, chosen.arguments, f, in), value, end);
     --open_parts_;
     const std::size_t rest = stale_.size() - stale_used_;
     if (end && out_.size() < *end && rest >= *end - out_.size()) {
@@ -511,19 +460,19 @@ class Encoder {
       if (f.condition.count && !value_of(f.condition, in)) continue;
       const int count = f.choice ? f.choice->count + 1 : 1;
       for (int c = 0; c < count; ++c) {
-        const Type* tried = f.type;
-        if (f.choice) tried = c < count - 1 ? f.choice->cases[c].type : f.choice->otherwise;
-        if (!tried) continue;
+        Chosen tried{f.type, f.arguments};
+        if (f.choice) tried = case_of(*f.choice, c);
+        if (!tried.type) continue;
         bool chosen = false;
         const Mark before = mark();
         try {
           push_path(f.name);
-          attempt(f, *tried, *value, in, limit, chosen);
+          attempt(f, tried, *value, in, limit, chosen);
           path_.resize(before.path);
           if (chosen) return true;
         } catch (const EncodeError& e) {
           // A missing key is taken to be that of whatever is tried.
-          const int rank = 2 * chosen + has_members(*tried, *value);
+          const int rank = 2 * chosen + has_members(*tried.type, *value);
           if (rank > error_rank) error = e;
           error_rank = std::max(error_rank, rank);
         }
@@ -536,6 +485,12 @@ class Encoder {
     fail("no message of " + std::string(type.name) + " has these fields here", type.requirement);
   }
 
+  /// Returns case `index`, that of `_` behind the others.
+  static Chosen case_of(const Switch& choice, int index) {
+    if (index == choice.count) return {choice.otherwise, choice.otherwise_arguments};
+    return {choice.cases[index].type, choice.cases[index].arguments};
+  }
+
   /// Returns whether every member of the object is one of the type's, if only by its beginning.
   static bool has_members(const Type& type, const Value& object) {
     return std::all_of(object.keys.begin(), object.keys.end(), [&](const std::string& key) {
@@ -544,13 +499,13 @@ class Encoder {
     });
   }
 
-  void attempt(const Field& f, const Type& type, const Value& value, const Part& in, Limit limit,
+  void attempt(const Field& f, Chosen tried, const Value& value, const Part& in, Limit limit,
                bool& chosen) {
     const auto picks = [&] {
-      return !f.choice || choose(*f.choice, value_of(f.choice->key, in)) == &type;
+      return !f.choice || choose(*f.choice, value_of(f.choice->key, in)) == tried.type;
     };
     try {
-      part(f, type, value, in, limit);
+      part(f, tried, value, in, limit);
     } catch (const EncodeError&) {
       chosen = picks();
       throw;
@@ -565,6 +520,8 @@ class Encoder {
   std::size_t start_;
   Measures measures_;
   std::string path_;
+  std::vector<std::size_t> starts_;  // Of the fields of the last structure, if it has such.
+  bool wants_starts_ = false;        // The next structure has to note them.
   int open_parts_ = 0;  // Parts around the present place whose end may take stale bytes.
 };
 

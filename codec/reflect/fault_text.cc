@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <iterator>
 
+#include "codec/reflect/text_field.h"
 #include "codec/runtime/crc16.h"
 #include "codec/runtime/ieee802154_fcs.h"
 
@@ -177,8 +178,7 @@ std::string note_text(const Note& note) {
       return std::string("frames of kind ") + hex + " carry no message known here";
     }
     case NoteKind::kNotText:
-      return name + " is not " +
-             (note.field && note.field->text->encoding == Encoding::kAscii ? "ASCII" : "UTF-8") +
+      return name + " is not " + (note.field ? encoding_name(*note.field->text) : "text") +
              ", it has the byte " + key;
     case NoteKind::kUnexpectedValue: break;
   }

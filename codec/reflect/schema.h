@@ -53,10 +53,11 @@ enum class Op : uint8_t {
   kAnd,
   kOr,
   kNot,
+  kParam,  ///< Only in specs that are read at run time.
 };
 struct ExprStep {
   Op op;
-  int32_t value;  ///< The constant, or the offset in bytes of a load.
+  int32_t value;  ///< The constant, the offset in bytes of a load, or the number of a parameter.
   /// 1 + the index of the field from whose start the load's offset counts; 0: the structure's
   /// start.
   uint16_t from = 0;  // Another one only in specs that are read at run time.
@@ -86,9 +87,17 @@ struct Unit {
   double offset;
 };
 
+/// What a parameter of a type is for one use of it; a value beyond min to max is a fault.
+struct Argument {
+  Expr value;
+  int64_t min;
+  int64_t max;
+};
+
 struct SwitchCase {
   int64_t key;
   const Type* type;
+  const Argument* arguments = nullptr;  ///< One for each parameter of the type.
 };
 /// Chooses the type of a field by a key. Cases in ascending order of key. Null `otherwise`: bytes
 /// without a case stay opaque.
@@ -97,6 +106,7 @@ struct Switch {
   const SwitchCase* cases;
   uint16_t count;
   const Type* otherwise;
+  const Argument* otherwise_arguments = nullptr;
 };
 
 enum class Kind : uint8_t {
@@ -108,7 +118,8 @@ enum class Kind : uint8_t {
   kBytes,   ///< Opaque bytes.
   kStruct,  ///< `type`, or what `choice` chooses.
 };
-enum class Repeat : uint8_t { kOnce, kCount, kToEnd };
+/// kUntil: until a condition on the element holds; only in specs that are read at run time.
+enum class Repeat : uint8_t { kOnce, kCount, kToEnd, kUntil };
 enum class Extent : uint8_t {
   kOwn,         ///< The size of its kind.
   kSize,        ///< `size` bytes.
@@ -116,13 +127,16 @@ enum class Extent : uint8_t {
   kTerminated,  ///< Bytes up to its text's terminator, which is the last of them.
 };
 
-enum class Encoding : uint8_t { kNone, kAscii, kUtf8 };
+/// kOther: one that iconv(3) reads, by its name.
+enum class Encoding : uint8_t { kNone, kAscii, kUtf8, kOther };
 /// How the bytes of a field are to be read (codec/reflect/text_field.h). kNone: as bytes.
 struct Text {
   Encoding encoding;
   int16_t terminator;  ///< A byte that ends the content; -1 if there is none.
   int16_t padding;     ///< A byte that fills the field after the content; -1 if none is stripped.
-  bool may_lack_its_end;  ///< kTerminated: the bytes may end without a terminator.
+  bool may_lack_its_end;          ///< kTerminated: the bytes may end without a terminator.
+  const char* charset = nullptr;  ///< kOther: the name of the encoding.
+  uint8_t unit = 1;               ///< Bytes of the terminator, which lies at a multiple of them.
 };
 
 struct Field {
@@ -151,9 +165,11 @@ struct Field {
   const Unit* unit;
   const char* doc;
   // Only in specs that are read at run time:
-  const Text* text = nullptr;  ///< kBytes with characters or a terminator.
-  uint8_t bit_width = 0;       ///< kBits.
-  uint8_t bit_shift = 0;       ///< kBits: number of the lowest bit within the number.
+  const Text* text = nullptr;           ///< kBytes with characters or a terminator.
+  uint8_t bit_width = 0;                ///< kBits.
+  uint8_t bit_shift = 0;                ///< kBits: number of the lowest bit within the number.
+  Expr until = {nullptr, 0};            ///< Repeat::kUntil: over the element, from its begin on.
+  const Argument* arguments = nullptr;  ///< kStruct: one for each parameter of `type`.
 
   /// Returns how many of its bytes the field before it has too: 1 for bits that begin within one.
   constexpr uint8_t shared_bytes() const {
@@ -183,7 +199,10 @@ struct Type {
   ReqId requirement;
   const char* doc;
   const char* doc_ref;
+  const char* const* params = nullptr;  ///< Names of its parameters, at most kMaxParams.
+  uint8_t param_count = 0;
 };
+constexpr int kMaxParams = 8;
 
 /// The structure that a carrier's frames begin with: "serial", "radio_i", "radio_t", "radio_ack".
 struct Carrier {

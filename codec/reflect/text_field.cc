@@ -1,6 +1,10 @@
 #include "codec/reflect/text_field.h"
 
+#include <iconv.h>
+
 #include <algorithm>
+#include <map>
+#include <utility>
 
 namespace rubric::reflect {
 namespace {
@@ -24,7 +28,76 @@ std::size_t character_bytes(Encoding encoding, Bytes text) {
   return length;
 }
 
+/// Conversions of iconv(3), each opened once a thread.
+class Converters {
+ public:
+  ~Converters() {
+    for (const auto& [names, open] : open_) {
+      if (open != kNone) iconv_close(open);
+    }
+  }
+
+  /// Appends what the bytes are in the other encoding, up to the first that are nothing in their
+  /// own. Returns how many bytes that took.
+  std::size_t convert(const char* from, const char* to, std::string_view bytes, std::string& out) {
+    const auto [found, fresh] = open_.try_emplace({from, to}, kNone);
+    if (fresh) found->second = iconv_open(to, from);
+    if (found->second == kNone) return 0;
+    iconv(found->second, nullptr, nullptr, nullptr, nullptr);
+    char* in = const_cast<char*>(bytes.data());  // iconv() does not write there.
+    std::size_t left = bytes.size();
+    while (left != 0) {
+      char part[256];
+      char* end = part;
+      std::size_t room = sizeof(part);
+      const std::size_t before = left;
+      const bool good = iconv(found->second, &in, &left, &end, &room) != kFault;
+      out.append(part, end);
+      if (good || left == before) break;
+    }
+    return bytes.size() - left;
+  }
+
+ private:
+  static constexpr auto kFault = static_cast<std::size_t>(-1);
+  const iconv_t kNone = reinterpret_cast<iconv_t>(-1);
+  std::map<std::pair<std::string, std::string>, iconv_t> open_;
+};
+
+std::size_t convert(const char* from, const char* to, std::string_view bytes, std::string& out) {
+  thread_local Converters converters;
+  return converters.convert(from, to, bytes, out);
+}
+
+constexpr const char* kUtf8Name = "UTF-8";
+
+/// Returns the bytes as UTF-8, up to the first that are no character; `sound` is their number.
+std::string sound_part(const Field& field, Bytes content, std::size_t& sound) {
+  std::string out;
+  const std::string_view all(reinterpret_cast<const char*>(content.data()), content.size());
+  if (field.text && field.text->encoding == Encoding::kOther) {
+    sound = convert(field.text->charset, kUtf8Name, all, out);
+  } else {
+    sound = sound_text(field, content);
+    out = all.substr(0, sound);
+  }
+  return out;
+}
+
 }  // namespace
+
+const char* encoding_name(const Text& text) {
+  if (text.encoding == Encoding::kOther) return text.charset;
+  return text.encoding == Encoding::kAscii ? "ASCII" : kUtf8Name;
+}
+
+std::size_t terminator_at(const Text& text, Bytes bytes) {
+  for (std::size_t at = 0; at + text.unit <= bytes.size(); at += text.unit) {
+    const std::uint8_t* const p = bytes.data() + at;
+    if (std::count(p, p + text.unit, text.terminator) == text.unit) return at;
+  }
+  return bytes.size();
+}
 
 Bytes text_content(const Field& field, Bytes all) {
   if (!field.text) return all;
@@ -32,15 +105,17 @@ Bytes text_content(const Field& field, Bytes all) {
   std::size_t size = all.size();
   while (text.padding >= 0 && size != 0 && all[size - 1] == text.padding) --size;
   if (text.terminator < 0) return all.first(size);
-  const std::uint8_t* const end = all.data() + size;
-  const std::uint8_t* const found = std::find(all.data(), end, text.terminator);
-  return all.first(static_cast<std::size_t>(found - all.data()));
+  return all.first(terminator_at(text, all.first(size)));
 }
 
 std::size_t sound_text(const Field& field, Bytes content) {
   const Encoding encoding = field.text ? field.text->encoding : Encoding::kNone;
   if (encoding == Encoding::kNone) return content.size();
   std::size_t at = 0;
+  if (encoding == Encoding::kOther) {
+    sound_part(field, content, at);
+    return at;
+  }
   while (at < content.size()) {
     const std::size_t length = character_bytes(encoding, content.from(at));
     if (length == 0) return at;
@@ -53,20 +128,21 @@ std::string shown_text(const Field& field, Bytes all) {
   Bytes rest = text_content(field, all);
   std::string out;
   while (true) {
-    const std::size_t sound = sound_text(field, rest);
-    out.append(rest.data(), rest.data() + sound);
+    std::size_t sound = 0;
+    out += sound_part(field, rest, sound);
     if (sound == rest.size()) return out;
     out += kReplacement;
-    rest = rest.from(sound + 1);
+    rest = rest.from(std::min<std::size_t>(sound + field.text->unit, rest.size()));
   }
 }
 
 bool says_all(const Field& field, Bytes all) {
   const Bytes content = text_content(field, all);
-  if (sound_text(field, content) != content.size()) return false;
+  std::size_t sound = 0;
+  const std::string shown = sound_part(field, content, sound);
+  if (sound != content.size()) return false;
   const bool sized = field.extent != Extent::kTerminated;
   std::vector<std::uint8_t> again;
-  const std::string shown(content.data(), content.data() + content.size());
   append_text(field, shown, sized ? std::optional(all.size()) : std::nullopt, again);
   return equal(all, Bytes(again.data(), again.size()));
 }
@@ -75,16 +151,23 @@ std::string append_text(const Field& field, std::string_view text, std::optional
                         std::vector<std::uint8_t>& out) {
   const Text& how = *field.text;
   const std::size_t begin = out.size();
-  out.insert(out.end(), text.begin(), text.end());
-  const Bytes content(out.data() + begin, text.size());
+  std::string bytes(text);
+  if (how.encoding == Encoding::kOther) {
+    bytes.clear();
+    if (convert(kUtf8Name, how.charset, text, bytes) != text.size()) {
+      return std::string("expected text in ") + how.charset;
+    }
+  }
+  out.insert(out.end(), bytes.begin(), bytes.end());
+  const Bytes content(out.data() + begin, bytes.size());
   if (sound_text(field, content) != content.size()) {
-    return how.encoding == Encoding::kAscii ? "expected ASCII" : "expected UTF-8";
+    return std::string("expected ") + encoding_name(how);
   }
   if (text_content(field, content).size() != content.size()) {
     return "expected text without its own terminator or padding";
   }
-  const bool ends = how.terminator >= 0 && (!room || *room > text.size());
-  if (ends) out.push_back(static_cast<std::uint8_t>(how.terminator));
+  const bool ends = how.terminator >= 0 && (!room || *room >= bytes.size() + how.unit);
+  if (ends) out.insert(out.end(), how.unit, static_cast<std::uint8_t>(how.terminator));
   if (room && *room > out.size() - begin && (how.padding >= 0 || how.terminator >= 0)) {
     out.resize(begin + *room, static_cast<std::uint8_t>(std::max<int>(how.padding, 0)));
   }

@@ -13,6 +13,12 @@
 
 namespace rubric::reflect {
 
+/// Returns the name of the encoding of characters.
+const char* encoding_name(const Text& text);
+
+/// Returns where the terminator begins; the number of bytes if there is none.
+std::size_t terminator_at(const Text& text, Bytes bytes);
+
 /// Returns the bytes before the terminator, without padding. A field without text has no more than
 /// content.
 Bytes text_content(const Field& field, Bytes all);

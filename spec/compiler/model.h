@@ -68,6 +68,7 @@ struct Expr {
   std::vector<const Field*> steps;  // kField: every field of the path.
   std::int64_t offset_bytes = -1;   // kField: from the start of the enclosing structure,
   int from = -1;                    // or, if it is at no constant position, of this field of it.
+  int param = -1;                   // kField: number of the parameter that it is instead.
   Interval range;
 };
 using ExprPtr = std::unique_ptr<Expr>;
@@ -96,6 +97,7 @@ struct SwitchCase {
   std::optional<std::int64_t> number;  // The key, unless that had a mistake.
   std::int64_t key = 0;                // The same, for emitters.
   std::string type_name;
+  std::vector<ExprPtr> arguments;
   const Type* type = nullptr;  // Resolved.
 };
 struct Switch {
@@ -117,6 +119,8 @@ struct Text {
   int terminator = -1;
   int padding = -1;
   bool may_lack_its_end = false;
+  std::string charset;  // kOther.
+  int unit = 1;         // Bytes of the terminator.
 };
 
 struct Field {
@@ -133,13 +137,15 @@ struct Field {
   bool little_endian = false;
   RepeatKind repeat = RepeatKind::kOnce;
   ExtentKind extent = ExtentKind::kOwn;
-  std::string type_name;       // As written: a user type, possibly "spec::type".
+  std::string type_name;  // As written: a user type, possibly "spec::type".
+  std::vector<ExprPtr> arguments;
   const Type* type = nullptr;  // Resolved: a structure or a mask.
   std::unique_ptr<Switch> choice;
   std::string enum_name;
   const Enum* enumeration = nullptr;
   ExprPtr size;       // Extent kSize.
   ExprPtr count;      // Repeat kCount.
+  ExprPtr until;      // Repeat kUntil.
   ExprPtr condition;  // `if`.
   std::optional<Valid> valid;
   ExprPtr expect_expr;  // `-expect`
@@ -165,6 +171,16 @@ struct MaskBit {
   bool unnamed = false;  // `-unnamed`
 };
 
+/// A value that a use of a type gives it: `type: part(length)`.
+struct Param {
+  std::string id;
+  SourcePlace place;
+  Interval range;
+  bool is_bool = false;
+  std::string enum_name;
+  const Enum* enumeration = nullptr;
+};
+
 struct Type {
   std::string id;
   std::string name;  // `-name`, else id.
@@ -177,7 +193,8 @@ struct Type {
   std::string requirement;
   std::vector<std::unique_ptr<Field>> fields;     // seq
   std::vector<std::unique_ptr<Field>> instances;  // peeks and interpretations, in order
-  std::vector<std::string> computed;              // Ids of instances that are passed over.
+  std::vector<Param> params;
+  std::vector<std::string> computed;          // Ids of instances that are passed over.
   bool is_mask = false;                       // `-mask`: then only bits, from the highest bit down.
   std::vector<MaskBit> bits;                  // From the highest down; as many as `-mask` says.
   std::optional<std::int64_t> declared_size;  // `-size`: the greatest size.

@@ -252,6 +252,9 @@ class Run {
     std::unique_ptr<Reader> reader = make_reader(reading.format, reading.options);
     source_.format = format_name(reading.format);
     pump(file, *reader, size);
+    const bool capture =
+        reading.format == InputFormat::kPcap || reading.format == InputFormat::kPcapng;
+    if (capture && source_.number == 0 && !options_.follow) remark("holds no packets");
     say_what_is_left_out(*reader);
   }
 
@@ -534,6 +537,10 @@ const reflect::Type* chosen_message(const InputOptions& options,
     throw UsageError("--as", "takes hex text or a binary file, not " + options.format);
   }
   const reflect::Type* type = reflect::find_type(protocol, options.as_message);
+  if (type && type->param_count != 0) {
+    throw UsageError("--as",
+                     options.as_message + " has parameters, which the type around it gives");
+  }
   if (type) return type;
   std::vector<std::string> names;
   for (int i = 0; i < protocol.type_count; ++i) names.emplace_back(protocol.types[i]->name);

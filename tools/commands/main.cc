@@ -1,5 +1,6 @@
 // rubric: the command line. A subcommand is one file, which adds itself.
 #include <fcntl.h>
+#include <poll.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -80,6 +81,11 @@ void hold_standard_streams() {
   }
 }
 
+bool reader_is_gone() {
+  pollfd out{STDOUT_FILENO, POLLOUT, 0};
+  return ::poll(&out, 1, 0) == 1 && (out.revents & (POLLERR | POLLHUP)) != 0;
+}
+
 int run(int argc, char** argv) {
   rubric::cli::Command program{
       "rubric", "Codec and conformance test kit for the RUBICON Communication Layer."};
@@ -95,7 +101,11 @@ int run(int argc, char** argv) {
   const int code = program.parse_and_run(argc, argv);
   errno = 0;
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
-  if (errno != 0 && errno != EPIPE) std::perror("rubric: cannot write stdout");
+  if (errno != 0 && errno != EPIPE) {
+    std::perror("rubric: cannot write stdout");
+  } else if (errno == 0 && code == rubric::cli::kExitClean && !reader_is_gone()) {
+    std::fputs("rubric: cannot write stdout\n", stderr);  // It failed before, as long help does.
+  }
   return rubric::cli::kExitOutput;
 }
 

@@ -102,6 +102,27 @@ class ExitCodes(ProgramTest):
         self.assertEqual(done.returncode, OUTPUT)
         self.assertIn("cannot write", done.stderr.decode())
 
+    def test_help_that_cannot_be_written_is_74_with_a_word(self):
+        # Long help is written before the end, short one at it.
+        for words in (("--version",), ("--help",), ("decode", "--help")):
+            with open("/dev/full", "wb") as full:
+                done = subprocess.run([RUBRIC, *words], stdout=full, stderr=subprocess.PIPE,
+                                      check=False)
+            self.assertEqual(done.returncode, OUTPUT, words)
+            self.assertIn(b"rubric: cannot write stdout", done.stderr, words)
+        done = subprocess.run(f"{RUBRIC} decode --help | head -c 1", shell=True, check=False,
+                              capture_output=True)
+        self.assertEqual(done.stderr, b"")  # A reader that has enough is no fault.
+
+    def test_a_capture_of_no_packets_says_so(self):
+        header = bytes.fromhex("d4c3b2a1 0200 0400 00000000 00000000 ffff0000 c3000000")
+        with tempfile.NamedTemporaryFile(suffix=".pcap") as file:
+            file.write(header)
+            file.flush()
+            done = run("decode", file.name)
+            self.assertEqual((done.returncode, done.stderr.decode()),
+                             (CLEAN, f"rubric: {file.name}: holds no packets\n"))
+
     def test_the_same_mistake_gives_the_same_message(self):
         there = "spec/captures/firmware/a_join_data.pcapng"
         for words in (("decode", "@"), ("stats", "@"), ("encode", "@"),

@@ -315,6 +315,44 @@ class File(Folder):
                       "--format", "hex", stdin='{"a":1,"b":2}')
         self.assertEqual(line.stdout.split(), ["01", "00", "02"], line.stderr)
 
+    def test_parameters_lists_and_other_encodings_are_written_as_they_are_read(self):
+        args = ["--spec", "spec/kaitai_check/lists.ksy"]
+        made = rubric("generate", *args, "--message", "lists", "--count", "60").stdout
+        raw = "".join(json.loads(line)["raw"] + "\n" for line in made.splitlines())
+        read = rubric("decode", *args, "--as", "lists", "--format", "jsonl", stdin=raw).stdout
+        sound = [line for line in read.splitlines() if json.loads(line)["error"] is None]
+        self.assertGreater(len(sound), 20)
+        again = rubric("encode", *args, "--format", "hex", stdin="\n".join(sound))
+        self.assertEqual([line.replace(" ", "").lower() for line in again.stdout.splitlines()],
+                         [json.loads(line)["raw"] for line in sound], again.stderr)
+
+    def test_what_a_condition_ends_is_cut_or_written_wrongly(self):
+        text = ("meta: {id: ends}\nseq: [{id: list, type: u1, repeat: until, "
+                "repeat-until: _ == 0}]\n")
+        args = ["--spec", self.file(text, "ends.ksy"), "--as", "ends"]
+        shown = rubric("decode", *args, stdin="01 02\n01 00\n01 00 03\n").stdout.splitlines()
+        self.assertIn("truncated at 2", shown[0])
+        self.assertIn("list=[1 0]", shown[1])
+        self.assertIn("list=[1 0] +1 stale", shown[2])
+        for given, wrong in (('[1]', "element 0 is the last, and does not end the list"),
+                             ('[0,1]', "element 0 ends the list, and others follow"),
+                             ('[]', "expected an element or more")):
+            done = rubric("encode", *args, "--carrier", "none", stdin=f'{{"list":{given}}}')
+            self.assertEqual(done.returncode, 66)
+            self.assertIn(wrong, done.stderr)
+
+    def test_a_parameter_that_its_type_does_not_hold_is_a_fault(self):
+        text = ("meta: {id: calls}\nseq: [{id: n, type: u1}, {id: a, type: 'part(n - 2)'}]\n"
+                "types: {part: {params: [{id: m, type: u1}], seq: [{id: b, size: m}]}}\n")
+        args = ["--spec", self.file(text, "calls.ksy"), "--as", "calls"]
+        done = rubric("decode", *args, stdin="03 AA\n01\n")
+        self.assertIn("a{b=aa}", done.stdout)
+        self.assertIn("truncated at 1", done.stdout.splitlines()[-1])
+        self.assertIn("can be beyond 'm'; each frame is checked", done.stderr)
+        alone = rubric("decode", *args[:2], "--as", "part", stdin="01\n")
+        self.assertEqual(alone.returncode, 64)
+        self.assertIn("part has parameters, which the type around it gives", alone.stderr)
+
     def test_text_and_bits_are_shown_and_written(self):
         args = ["--spec", self.file(TEXTS, "texts.ksy"), "--as", "texts"]
         line = "4ABCDE 6162000000000000 68C3A400 AABB 07 6869"

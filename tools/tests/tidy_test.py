@@ -87,6 +87,7 @@ HAND_MADE = {
     "codec/runtime/": "the loads and stores themselves, and the framing of serial lines",
     "codec/containers/": "framing: capture files, check sums, records",
     "codec/reflect/decode.cc": "loads what the tables say",
+    "codec/reflect/evaluate.cc": "loads what the tables say",
     "codec/reflect/encode_number.cc": "stores what the tables say",
     "codec/bench/": "compares views with hand-written code",
     "codec/tests/": "tests",

@@ -55,9 +55,10 @@ struct ExprShape {
 /// The surroundings of an expression: which fields it can read.
 struct Scope {
   const Type& type;
-  std::size_t fields_before;  // Fields of seq that are read before it.
-  bool peeks = false;         // Instances may read the peeks.
-  bool wide = false;          // Constants may be as wide as a field, not just 32 bits.
+  std::size_t fields_before;       // Fields of seq that are read before it.
+  bool peeks = false;              // Instances may read the peeks.
+  bool wide = false;               // Constants may be as wide as a field, not just 32 bits.
+  const Field* element = nullptr;  // Of a list: what `_` is, and alone can be read.
 };
 
 /// Checks types, enums and overlaid names; duplicate names.
@@ -76,6 +77,8 @@ std::optional<std::int64_t> resolve_constant(Check& check, Expr& expr, std::stri
 void check_field_shape(Check& check, Field& field);
 /// Checks `valid`, -expect and the range of a number.
 void check_values(Check& check, Field& field, const Scope& scope);
+/// Resolves what the parameters of the types of a field are.
+void resolve_calls(Check& check, Field& field, const Scope& scope);
 void check_switch(Check& check, Switch& choice, const Field& field, const Scope& scope);
 /// Computes sizes and offsets of the types in `order`.
 void check_layout(Check& check);

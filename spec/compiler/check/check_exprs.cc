@@ -102,6 +102,12 @@ class Resolver {
                    "a number or an enum::value was expected");
       return nullptr;
     }
+    if (scope_.element != nullptr || name == "_") {
+      check_.error(expr.place, fmt::format("{} is outside the profile", quote(to_text(expr))),
+                   scope_.element != nullptr ? "the element, '_', and parameters can be read here"
+                                             : "fields of the same structure can be read");
+      return nullptr;
+    }
     const auto& fields = scope_.type.fields;
     for (std::size_t i = 0; i < fields.size(); ++i) {
       if (fields[i]->id != name) continue;
@@ -129,8 +135,8 @@ class Resolver {
     return nullptr;
   }
 
-  int index_of(const Field& field) const {
-    const auto& fields = scope_.type.fields;
+  static int index_of(const Field& field, const Type& type) {
+    const auto& fields = type.fields;
     const auto is_it = [&](const auto& one) { return one.get() == &field; };
     return static_cast<int>(std::find_if(fields.begin(), fields.end(), is_it) - fields.begin());
   }
@@ -158,7 +164,8 @@ class Resolver {
   /// Returns whether the field that is the whole path may be at a place that differs from frame to
   /// frame, and is looked for in each. Carriers are told apart by constant places.
   bool may_float(const Expr& expr) const {
-    return check_.at_run_time && expr.path.size() == 1 && !scope_.peeks &&
+    const std::size_t names = scope_.element == nullptr ? 1 : 2;
+    return check_.at_run_time && expr.path.size() == names && !scope_.peeks &&
            scope_.type.carrier.empty();
   }
 
@@ -179,13 +186,40 @@ class Resolver {
     return false;
   }
 
+  std::optional<ExprShape> param(Expr& expr) {
+    const auto& params = scope_.type.params;
+    for (std::size_t i = 0; !scope_.wide && i < params.size(); ++i) {
+      if (params[i].id != expr.path[0]) continue;
+      if (expr.path.size() > 1) {
+        check_.error(expr.place, fmt::format("{} has no fields to read", quote(expr.path[0])),
+                     "it is a parameter");
+        return open();
+      }
+      expr.param = static_cast<int>(i);
+      expr.range = params[i].range;
+      const Enum* const names = expr.to_i ? nullptr : params[i].enumeration;
+      if (params[i].is_bool && !expr.to_i) return ExprShape{Shape::kBool, nullptr};
+      return ExprShape{names == nullptr ? Shape::kInt : Shape::kEnum, names};
+    }
+    return std::nullopt;
+  }
+
   ExprShape field(Expr& expr) {
-    const Field* step = head(expr);
+    if (const auto found = param(expr)) return *found;
+    const bool of_element = scope_.element != nullptr && expr.path[0] == "_";
+    const Field* step = of_element ? scope_.element : head(expr);
+    const Type& owner = of_element && step->type != nullptr ? *step->type : scope_.type;
     std::int64_t offset = 0;
     for (std::size_t i = 0; step != nullptr; ++i) {
+      if (of_element && i == 0) {  // The list, which begins where the element does.
+        expr.steps.push_back(step);
+        if (expr.path.size() == 1) break;
+        step = inner(expr, *step, expr.path[1]);
+        continue;
+      }
       if (check_.is_open(step)) return open();
       if (!is_fixed(expr, *step)) return open();
-      if (step->fixed_offset < 0) expr.from = index_of(*step);
+      if (step->fixed_offset < 0) expr.from = index_of(*step, owner);
       offset += std::max<std::int64_t>(step->fixed_offset, 0);
       expr.steps.push_back(step);
       if (i + 1 == expr.path.size()) break;

@@ -28,6 +28,10 @@ void check_plain(Check& check, const Field& field) {
     check.error(place, fmt::format("text or a terminator in {}", quote(field.id)),
                 "bytes were expected; rubric --spec reads text");
   }
+  if (field.repeat == RepeatKind::kUntil) {
+    check.error(place_of(field.places, "repeat", field.place), "repeat: until",
+                "a count was expected, so that the size is known before; rubric --spec reads it");
+  }
   if (field.bit_width > 0) {
     check.error(place, "bits outside a mask",
                 "-mask: 8 or -mask: 16 was expected at the type; rubric --spec reads bits");
@@ -66,6 +70,7 @@ void check_repeat(Check& check, Field& field) {
     check.open.insert(&field);
   }
   if (field.repeat == RepeatKind::kCount && !field.count) check.open.insert(&field);
+  if (field.repeat == RepeatKind::kUntil && !field.until) check.open.insert(&field);
 }
 
 void check_enum_use(Check& check, Field& field) {
@@ -154,6 +159,7 @@ void check_interpretation(Check& check, const Type& type, Field& instance) {
   instance.max_size = kUnbounded;
   check_overlay(check, type, instance);
   if (instance.choice) check_switch(check, *instance.choice, instance, scope);
+  resolve_calls(check, instance, scope);
   if (!instance.condition) return;
   const ExprShape found = resolve_expr(check, *instance.condition, scope);
   if (found.shape != Shape::kBool && found.shape != Shape::kOpen) {

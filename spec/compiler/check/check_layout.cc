@@ -31,6 +31,7 @@ class Layout {
   Layout(Check& check, Type& type) : check_(check), type_(type) {}
 
   void run() {
+    if (!type_.params.empty()) check_params();
     for (std::size_t i = 0; i < type_.fields.size(); ++i) {
       Field& field = *type_.fields[i];
       if (field.bit_width > 0) {
@@ -46,6 +47,19 @@ class Layout {
   }
 
  private:
+  void check_params() {
+    const SourcePlace& place = place_of(type_.places, "params", type_.place);
+    if (!check_.at_run_time) {
+      check_.error(
+          place, fmt::format("type {} has parameters", quote(type_.id)),
+          "fields were expected, by which alone its size is known; rubric --spec reads it");
+    }
+    if (!type_.am_types.empty() || !type_.carrier.empty()) {
+      check_.error(place, fmt::format("parameters of a message or frame, {}", quote(type_.id)),
+                   "nothing says what they are");
+    }
+  }
+
   bool last(std::size_t index) const { return index + 1 == type_.fields.size(); }
 
   /// Finds the bytes that a field of bits lies in, and its place within them.
@@ -89,6 +103,8 @@ class Layout {
     if (field.choice) check_switch(check_, *field.choice, field, scope);
     const bool extent_ok = resolve_number(field, field.size, scope, "size");
     const bool count_ok = resolve_number(field, field.count, scope, "count");
+    resolve_until(field, scope);
+    if (field.kind == ValueKind::kStruct) resolve_calls(check_, field, scope);
     check_last(field, index);
     if (!extent_ok || !count_ok || check_.is_open(&field) || is_type_open(field)) {
       // Later fields have an unknown place: report nothing about them.
@@ -114,6 +130,17 @@ class Layout {
       check_.error(field.condition->place, "'if' is not a condition", "a comparison was expected");
     }
     return true;
+  }
+
+  void resolve_until(const Field& field, Scope scope) {
+    if (!field.until || check_.is_open(&field) || is_type_open(field)) return;
+    scope.element = &field;
+    const ExprShape found = resolve_expr(check_, *field.until, scope);
+    if (found.shape == Shape::kBool) return;
+    check_.open.insert(&field);
+    if (found.shape == Shape::kOpen) return;
+    check_.error(field.until->place, "'repeat-until' is not a condition",
+                 "a comparison was expected");
   }
 
   /// Resolves a size or a count: a number that is never negative.
@@ -205,6 +232,7 @@ class Layout {
       size = {times(size.min, count.min), times(size.max, count.max)};
     }
     if (field.repeat == RepeatKind::kToEnd) size = {0, kUnbounded};
+    if (field.repeat == RepeatKind::kUntil) size.max = kUnbounded;
     if (conditional) size.min = 0;
     field.min_size = size.min;
     field.max_size = size.max;

@@ -87,9 +87,8 @@ const Type* find_type(Check& check, const Spec& spec, const std::string& name,
   if (where == &spec) known.insert(known.end(), kNumberTypes.begin(), kNumberTypes.end());
   const bool eight_bytes = id.size() >= 2 && id.find_first_of("usf") == 0 && id[1] == '8';
   check.error(place, fmt::format("unknown type {}", quote(name)),
-              name.find('(') != name.npos ? "arguments of types are not read"
-              : eight_bytes ? "at most 4 bytes are read as a number; 'size: 8' keeps them"
-                            : suggestion(id, known));
+              eight_bytes ? "at most 4 bytes are read as a number; 'size: 8' keeps them"
+                          : suggestion(id, known));
   return nullptr;
 }
 
@@ -130,6 +129,16 @@ void resolve_field(Check& check, const Spec& spec, Field& field) {
   }
 }
 
+void resolve_param(Check& check, const Spec& spec, Param& param) {
+  if (param.enum_name.empty()) return;
+  const auto [where, id] = split(check, spec, param.enum_name, param.place);
+  if (where == nullptr) return;
+  param.enumeration = find_enum(*where, id);
+  if (param.enumeration != nullptr) return;
+  check.error(param.place, fmt::format("unknown enum {}", quote(param.enum_name)),
+              suggestion(id, ids_of(where->enums)));
+}
+
 void check_enum(Check& check, Enum& one) {
   DistinctNames names(check, "enum value");
   std::map<std::int64_t, int> lines;
@@ -148,6 +157,7 @@ void check_enum(Check& check, Enum& one) {
 
 void check_type_names(Check& check, const Type& type) {
   DistinctNames fields(check, "field");
+  for (const Param& param : type.params) fields.add(param.id, param.place);
   for (const auto& field : type.fields) fields.add(field->id, field->place);
   for (const auto& field : type.instances) fields.add(field->id, field->place);
   DistinctNames bits(check, "bit");
@@ -180,6 +190,7 @@ void check_names(Check& check) {
     }
     for (const auto& type : spec->types) {
       check_type_names(check, *type);
+      for (Param& param : type->params) resolve_param(check, *spec, param);
       for (const auto& field : type->fields) resolve_field(check, *spec, *field);
       for (const auto& field : type->instances) resolve_field(check, *spec, *field);
     }

@@ -151,6 +151,55 @@ void check_types(Check& check) {
   }
 }
 
+namespace {
+
+void resolve_call(Check& check, const Type* type, std::vector<ExprPtr>& arguments,
+                  const SourcePlace& place, const Scope& scope) {
+  if (type == nullptr) return;
+  if (arguments.size() != type->params.size()) {
+    check.error(place, fmt::format("arguments for type {}: {}", quote(type->id), arguments.size()),
+                fmt::format("as many as its parameters were expected: {}", type->params.size()));
+    return;
+  }
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    const Param& param = type->params[i];
+    Expr& expr = *arguments[i];
+    const ExprShape found = resolve_expr(check, expr, scope);
+    if (found.shape == Shape::kOpen) continue;
+    const Shape wanted = param.is_bool                  ? Shape::kBool
+                         : param.enumeration != nullptr ? Shape::kEnum
+                                                        : Shape::kInt;
+    if (found.shape != wanted ||
+        (wanted == Shape::kEnum && found.enumeration != param.enumeration)) {
+      check.error(expr.place,
+                  fmt::format("{} does not fit {}", quote(to_text(expr)), quote(param.id)),
+                  "an argument of the parameter's type was expected");
+    } else if (expr.range.max < param.range.min || expr.range.min > param.range.max) {
+      check.error(expr.place,
+                  fmt::format("{} never fits {}", quote(to_text(expr)), quote(param.id)),
+                  fmt::format("{} to {} was expected", param.range.min, param.range.max));
+    } else if (expr.range.min < param.range.min || expr.range.max > param.range.max) {
+      check.unproved(expr.place,
+                     fmt::format("{} can be beyond {}", quote(to_text(expr)), quote(param.id)),
+                     fmt::format("{} to {} was expected", param.range.min, param.range.max));
+    }
+  }
+}
+
+}  // namespace
+
+void resolve_calls(Check& check, Field& field, const Scope& scope) {
+  resolve_call(check, field.type, field.arguments, place_of(field.places, "type", field.place),
+               scope);
+  if (!field.choice) return;
+  for (SwitchCase& one : field.choice->cases) {
+    resolve_call(check, one.type, one.arguments, one.place, scope);
+  }
+  if (!field.choice->otherwise) return;
+  SwitchCase& rest = *field.choice->otherwise;
+  resolve_call(check, rest.type, rest.arguments, rest.place, scope);
+}
+
 void check_switch(Check& check, Switch& choice, const Field& field, const Scope& scope) {
   if (!choice.key) {
     check.open.insert(&field);

@@ -205,7 +205,7 @@ class Parser {
 
   ExprPtr name() {
     ExprPtr out = node(ExprOp::kField, here());
-    if (token_[0] == '_') {
+    if (token_[0] == '_' && token_ != "_") {
       fail(fmt::format("{} is outside the profile", quote(token_)),
            "fields of the same structure can be read");
     }

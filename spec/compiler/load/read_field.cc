@@ -1,5 +1,6 @@
 // Reads one field, instance or bit of a mask.
 #include <fmt/core.h>
+#include <iconv.h>
 
 #include <algorithm>
 #include <array>
@@ -10,10 +11,10 @@
 namespace rubricc {
 namespace {
 
-constexpr std::array<std::string_view, 20> kSeqKeys{
-    "id",       "type",       "enum",      "size",      "size-eos", "repeat", "repeat-expr",
-    "if",       "valid",      "contents",  "doc",       "doc-ref",  "-name",  "-requirement",
-    "encoding", "terminator", "eos-error", "pad-right", "-unit",    "-expect"};
+constexpr std::array<std::string_view, 21> kSeqKeys{
+    "repeat-until", "id",       "type",       "enum",      "size",      "size-eos", "repeat",
+    "repeat-expr",  "if",       "valid",      "contents",  "doc",       "doc-ref",  "-name",
+    "-requirement", "encoding", "terminator", "eos-error", "pad-right", "-unit",    "-expect"};
 constexpr std::array<std::string_view, 9> kInstanceKeys{
     "pos", "type", "enum", "size-eos", "if", "doc", "doc-ref", "-name", "-requirement"};
 constexpr std::array<std::string_view, 4> kBitKeys{"id", "type", "doc", "-unnamed"};
@@ -48,17 +49,42 @@ bool set_number(const YamlInput& input, const YAML::Node& node, std::string_view
   return true;
 }
 
-Encoding encoding_of(const YamlInput& input, const YamlMap& map, const Spec& spec) {
+/// Encodings that iconv(3) reads, in which a character does not depend on those before it.
+constexpr std::array<std::string_view, 14> kCharsets{
+    "ISO-8859-", "WINDOWS-", "IBM",  "UTF-16LE", "UTF-16BE",  "UTF-32LE", "UTF-32BE",
+    "CP",        "KOI8-",    "EUC-", "GB",       "SHIFT_JIS", "SJIS",     "BIG5"};
+
+bool knows_charset(const std::string& word) {
+  if (!std::any_of(kCharsets.begin(), kCharsets.end(),
+                   [&](std::string_view begin) { return word.starts_with(begin); })) {
+    return false;
+  }
+  const auto is_part = [](char c) { return std::isalnum(c) != 0 || c == '-' || c == '_'; };
+  if (!std::all_of(word.begin(), word.end(), is_part)) return false;
+  const iconv_t open = iconv_open("UTF-8", word.c_str());
+  if (open == reinterpret_cast<iconv_t>(-1)) return false;
+  iconv_close(open);
+  return true;
+}
+
+void set_encoding(const YamlInput& input, const YamlMap& map, const Spec& spec, Text& text) {
   const auto own = map.text("encoding");
   std::string word = own.value_or(spec.encoding);
   std::transform(word.begin(), word.end(), word.begin(),
                  [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 32) : c; });
-  if (word == "UTF-8") return Encoding::kUtf8;
-  if (word == "ASCII") return Encoding::kAscii;
+  text.encoding = word == "UTF-8" ? Encoding::kUtf8 : Encoding::kAscii;
+  if (word == "UTF-8" || word == "ASCII") return;
+  if (knows_charset(word)) {
+    text.encoding = Encoding::kOther;
+    text.charset = word;
+    text.unit = word.starts_with("UTF-16") ? 2 : word.starts_with("UTF-32") ? 4 : 1;
+    return;
+  }
   const std::string what = word.empty() ? "text without encoding" : "the encoding " + quote(word);
-  input.error(own ? map.find("encoding")->value : map.find("type")->value, what,
-              "known are ASCII and UTF-8");
-  return Encoding::kAscii;
+  input.error(
+      own ? map.find("encoding")->value : map.find("type")->value, what,
+      "known are ASCII, UTF-8, UTF-16LE, UTF-16BE, ISO-8859-1, windows-1252 and others that "
+      "iconv -l names");
 }
 
 /// Sets "b12" and similar types; returns false for every other word.
@@ -92,7 +118,12 @@ void read_text(const YamlInput& input, const YamlMap& map, const Spec& spec, Fie
     if (map.has("type") || !(map.has("terminator") || map.has("pad-right"))) return;
   }
   Text text;
-  if (is_text) text.encoding = encoding_of(input, map, spec);
+  if (is_text) set_encoding(input, map, spec, text);
+  for (const char* key : {"terminator", "pad-right"}) {
+    if (text.unit == 1 || !map.has(key)) continue;
+    input.error(map.find(key)->key_node, fmt::format("{} of {}", quote(key), text.charset),
+                "its characters have more than a byte; strz ends with one that is 0");
+  }
   const auto byte = [&](const char* key, int otherwise) {
     const auto value = map.integer(key);
     if (!value) return otherwise;
@@ -108,6 +139,31 @@ void read_text(const YamlInput& input, const YamlMap& map, const Spec& spec, Fie
   if (text.terminator >= 0 && field.extent == ExtentKind::kOwn) {
     field.extent = ExtentKind::kTerminated;
   }
+}
+
+/// Reads "part(length, 3)": the name of a type, and what its parameters are.
+std::string read_call(const YamlInput& input, const YAML::Node& node, const std::string& word,
+                      std::vector<ExprPtr>& arguments) {
+  const std::size_t open = word.find('(');
+  if (open == word.npos) return word;
+  if (!word.ends_with(')')) {
+    input.error(node, "a bracket is not closed", "')' was expected at the end");
+    return word.substr(0, open);
+  }
+  int depth = 0;
+  for (std::size_t from = open + 1, at = from; at < word.size(); ++at) {
+    const bool ends = depth == 0 && (word[at] == ',' || at + 1 == word.size());
+    depth += (word[at] == '(') - (word[at] == ')' && !ends);
+    if (!ends) continue;
+    SourcePlace place = input.place(node);
+    if (node.Tag() == "!") ++place.column;  // After the quote.
+    while (from < at && word[from] == ' ') ++from;
+    place.column += static_cast<int>(from);
+    auto expr = parse_expr(word.substr(from, at - from), place, input.diagnostics);
+    if (expr) arguments.push_back(std::move(expr));
+    from = at + 1;
+  }
+  return word.substr(0, open);
 }
 
 std::unique_ptr<Switch> read_switch(const YamlInput& input, const YAML::Node& node) {
@@ -131,7 +187,7 @@ std::unique_ptr<Switch> read_switch(const YamlInput& input, const YAML::Node& no
     SwitchCase found{.place = input.place(entry.key_node)};
     const auto type = yaml_text(input, entry.value, "the type of a case");
     if (!type) continue;
-    found.type_name = *type;
+    found.type_name = read_call(input, entry.value, *type, found.arguments);
     if (entry.key == "_") {
       out->otherwise = std::move(found);
       continue;
@@ -155,7 +211,7 @@ void read_type_of(const YamlInput& input, const YamlMap& map, const Spec& spec, 
   if (*word == "str" || *word == "strz" || set_bits(input, entry->value, *word, spec, field))
     return;
   field.kind = ValueKind::kStruct;
-  field.type_name = *word;
+  field.type_name = read_call(input, entry->value, *word, field.arguments);
 }
 
 void read_valid(const YamlInput& input, const YamlMap& map, Field& field) {
@@ -236,20 +292,32 @@ void read_repeat(const YamlInput& input, const YamlMap& map, Field& field) {
   const YamlEntry* count = map.find("repeat-expr");
   if (count != nullptr) field.count = read_expr(input, count->value, "repeat-expr");
   const auto repeat = map.text("repeat");
+  const auto until = map.text("repeat-until");
   if (repeat == "expr") {
     field.repeat = RepeatKind::kCount;
     if (count == nullptr) {
       input.error(map.find("repeat")->value, "repeat: expr without a count",
                   "repeat-expr: was expected");
     }
-  } else if (repeat == "eos") {
+  } else if (repeat == "eos" || (repeat == "until" && until == "_io.eof")) {
     field.repeat = RepeatKind::kToEnd;
+  } else if (repeat == "until") {
+    field.repeat = RepeatKind::kUntil;
+    const YamlEntry* entry = map.find("repeat-until");
+    if (entry != nullptr) field.until = read_expr(input, entry->value, "repeat-until");
+    if (entry == nullptr) {
+      input.error(map.find("repeat")->value, "repeat: until without a condition",
+                  "repeat-until: was expected");
+    }
   } else if (repeat) {
     input.error(map.find("repeat")->value, "repeat is " + quote(*repeat),
-                "expr or eos was expected");
+                "expr, eos or until was expected");
   }
   if (count != nullptr && repeat != "expr") {
     input.error(count->key_node, "repeat-expr without repeat: expr", "");
+  }
+  if (until && repeat != "until") {
+    input.error(map.find("repeat-until")->key_node, "repeat-until without repeat: until", "");
   }
 }
 

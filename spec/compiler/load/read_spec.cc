@@ -13,13 +13,14 @@ using Keys = std::span<const std::string_view>;
 constexpr std::array<std::string_view, 12> kMetaKeys{
     "id",         "title",    "endian",      "license",        "imports", "ks-version",
     "bit-endian", "encoding", "application", "file-extension", "xref",    "tags"};
-constexpr std::array<std::string_view, 12> kTopKeys{
-    "meta",      "doc",   "doc-ref", "seq",      "types",    "enums",
+constexpr std::array<std::string_view, 13> kTopKeys{
+    "meta",      "doc",   "doc-ref", "params",   "seq",      "types",       "enums",
     "instances", "-name", "-size",   "-am-type", "-carrier", "-requirement"};
-constexpr std::array<std::string_view, 14> kTypeKeys{
-    "doc",   "doc-ref", "seq",  "instances", "types",    "enums",    "-name",
-    "-size", "-mask",   "-crc", "-am-type",  "-carrier", "-framing", "-requirement"};
+constexpr std::array<std::string_view, 15> kTypeKeys{
+    "doc",   "params", "doc-ref", "seq",      "instances", "types",    "enums",       "-name",
+    "-size", "-mask",  "-crc",    "-am-type", "-carrier",  "-framing", "-requirement"};
 constexpr std::array<std::string_view, 3> kCrcKeys{"polynomial", "initial", "order"};
+constexpr std::array<std::string_view, 5> kParamKeys{"id", "type", "enum", "doc", "doc-ref"};
 constexpr std::array<std::string_view, 2> kEnumValueKeys{"id", "doc"};
 constexpr int kTypesDeep = 20;
 constexpr std::int64_t kEnumValueMax = 0xFFFFFFFF;
@@ -93,7 +94,46 @@ void read_bits(const YamlInput& input, const YamlMap& map, Type& type) {
   }
 }
 
+/// Returns the values of "u2" and other types that a parameter has.
+std::optional<Interval> param_range(std::string_view word) {
+  if (word == "bool") return Interval{0, 1};
+  const auto width = parse_integer(word.substr(std::min<std::size_t>(1, word.size())));
+  if (!width || *width < 1) return std::nullopt;
+  if (word[0] == 'b' && *width <= 32) return Interval{0, (std::int64_t{1} << *width) - 1};
+  if (*width != 1 && *width != 2 && *width != 4) return std::nullopt;
+  const std::int64_t span = std::int64_t{1} << (8 * *width);
+  if (word[0] == 'u') return Interval{0, span - 1};
+  if (word[0] == 's') return Interval{-span / 2, span / 2 - 1};
+  return std::nullopt;
+}
+
+void read_params(const YamlInput& input, const YamlMap& map, Type& type) {
+  const YamlEntry* entry = map.find("params");
+  if (entry == nullptr) return;
+  for (const YAML::Node& item : yaml_items(input, entry->value, "params")) {
+    const YamlMap keys(input, item, "a parameter", kParamKeys);
+    Param param{.id = keys.text("id").value_or(""), .place = input.place(item)};
+    check_id(input.diagnostics, param.place, param.id, "a parameter");
+    const std::string word = keys.text("type").value_or("bytes");
+    const auto range = param_range(word);
+    if (!range) {
+      input.error(keys.has("type") ? keys.find("type")->value : item,
+                  fmt::format("a parameter of type {}", quote(word)),
+                  "u1, u2, u4, s1, s2, s4, bool or b1 to b32 was expected");
+    }
+    param.range = range.value_or(Interval{0, 1});
+    param.enum_name = keys.text("enum").value_or("");
+    param.is_bool = word == "bool" || (word == "b1" && param.enum_name.empty());
+    type.params.push_back(std::move(param));
+  }
+  if (type.params.size() > rubric::reflect::kMaxParams) {
+    input.error(entry->value, fmt::format("too many parameters: {}", type.params.size()),
+                fmt::format("at most {} are read", rubric::reflect::kMaxParams));
+  }
+}
+
 void read_fields(const YamlInput& input, const YamlMap& map, const Spec& spec, Type& type) {
+  read_params(input, map, type);
   if (const YamlEntry* seq = map.find("seq")) {
     for (const YAML::Node& item : yaml_items(input, seq->value, "seq")) {
       if (auto field = read_field(input, item, FieldPlace::kSeq, spec, nullptr)) {

@@ -9,6 +9,7 @@
 
 #include "codec/reflect/decode.h"
 #include "codec/reflect/fault_text.h"
+#include "codec/reflect/text_field.h"
 #include "tools/commands/explain/table.h"
 
 namespace rubric::explain {
@@ -22,6 +23,11 @@ using reflect::Repeat;
 using reflect::Type;
 
 namespace {
+
+/// Returns whether the expression is the number of a field alone.
+bool is_load(const reflect::Expr& expr) {
+  return expr.count == 1 && expr.steps[0].op != reflect::Op::kParam;
+}
 
 template <class T>
 void add_once(std::vector<const T*>& list, const T* item) {
@@ -74,7 +80,7 @@ class Layout {
 
   void add_choice(const Type& owner, const Field& f, const std::string& path) {
     const Field* key_field = nullptr;
-    if (f.choice->key.count == 1) path_of(f.choice->key.steps[0], owner, &key_field);
+    if (is_load(f.choice->key)) path_of(f.choice->key.steps[0], owner, &key_field);
     const EnumTable* names = key_field ? key_field->enumeration : nullptr;
     choices_ += fmt::format("\n  {} by {}", path, expr_text(f.choice->key, owner));
     if (f.condition.count) choices_ += fmt::format(", if {}", expr_text(f.condition, owner));
@@ -238,6 +244,8 @@ std::string expr_text(const Expr& expr, const Type& type) {
     const ExprStep& step = expr.steps[i];
     if (step.op <= Op::kLoadLe32) {
       stack.push_back(operand(step, type));
+    } else if (step.op == Op::kParam) {
+      stack.push_back({type.params[step.value]});
     } else if (step.op == Op::kNot) {
       stack.back().text = "not (" + stack.back().text + ')';
     } else {
@@ -255,7 +263,7 @@ namespace {
 
 std::string bytes_name(const Field& f) {
   if (!f.text || f.text->encoding == reflect::Encoding::kNone) return "bytes";
-  return f.text->encoding == reflect::Encoding::kAscii ? "ASCII" : "UTF-8";
+  return reflect::encoding_name(*f.text);
 }
 
 }  // namespace
@@ -274,6 +282,7 @@ std::string type_text(const Field& f, const Type& owner) {
   }
   if (f.repeat == Repeat::kCount) return fmt::format("{}[{}]", text, expr_text(f.count, owner));
   if (f.repeat == Repeat::kToEnd) return text + "[...]";
+  if (f.repeat == Repeat::kUntil) return text + "[until]";
   return text;
 }
 
@@ -287,6 +296,7 @@ std::string size_text(const Field& f, const Type& owner) {
     each = f.type->max_size;
   }
   if (f.repeat == Repeat::kOnce) return std::to_string(each);
+  if (f.repeat == Repeat::kUntil) return fmt::format("{}..", each);
   if (f.count.count == 1 && f.count.steps[0].op == Op::kConst) {
     return std::to_string(each * static_cast<std::uint32_t>(f.count.steps[0].value));
   }
@@ -441,7 +451,7 @@ bool leads_to(const Field& f, const Type& message, Reach& reach) {
   reach.otherwise = f.choice->otherwise == &message;
   if (reach.values.empty() && !reach.otherwise) return false;
   reach.key = expr_text(f.choice->key, *reach.parent);
-  if (f.choice->key.count == 1) {
+  if (is_load(f.choice->key)) {
     path_of(f.choice->key.steps[0], *reach.parent, &reach.key_field);
   }
   return true;

@@ -141,7 +141,9 @@ std::string field_text(const Field& field) {
   entry.add_function("size", field.size);
   entry.add_function("count", field.count);
   entry.add_function("condition", field.condition);
-  if (field.text && field.text->encoding != Encoding::kNone) {
+  // Text in another encoding is shown as bytes.
+  if (field.text && field.text->encoding != Encoding::kNone &&
+      field.text->encoding != Encoding::kOther) {
     entry.add_text("text", field.text->encoding == Encoding::kAscii ? "ASCII" : "UTF-8");
     if (field.text->terminator >= 0) {
       entry.add("terminator", std::to_string(field.text->terminator));

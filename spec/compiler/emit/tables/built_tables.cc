@@ -48,8 +48,9 @@ void append_bits(const Expr& expr, std::vector<reflect::ExprStep>& out) {
 }
 
 void append(const Expr& expr, std::vector<reflect::ExprStep>& out) {
-  if (expr.op == ExprOp::kField && expr.field->bit_width > 0) return append_bits(expr, out);
+  if (expr.field != nullptr && expr.field->bit_width > 0) return append_bits(expr, out);
   for (const auto& operand : expr.operands) append(*operand, out);
+  if (expr.param >= 0) return out.push_back({reflect::Op::kParam, expr.param});
   const bool is_field = expr.op == ExprOp::kField;
   out.push_back({is_field ? load(*expr.field) : op_of(expr.op),
                  static_cast<std::int32_t>(is_field ? expr.offset_bytes : expr.value),
@@ -162,11 +163,22 @@ class BuiltTables::Builder {
     if (!field.choice) return nullptr;
     std::vector<reflect::SwitchCase> cases;
     for (const SwitchCase& one : field.choice->cases) {
-      cases.push_back({one.key, type_of(one.type)});
+      cases.push_back({one.key, type_of(one.type), arguments(one.type, one.arguments)});
     }
     const auto& otherwise = field.choice->otherwise;
+    const Type* const rest = otherwise ? otherwise->type : nullptr;
     return single<reflect::Switch>({expr(field.choice->key), list(cases), count(cases),
-                                    type_of(otherwise ? otherwise->type : nullptr)});
+                                    type_of(rest),
+                                    rest ? arguments(rest, otherwise->arguments) : nullptr});
+  }
+
+  const reflect::Argument* arguments(const Type* type, const std::vector<ExprPtr>& given) {
+    std::vector<reflect::Argument> out;
+    for (std::size_t i = 0; i < given.size(); ++i) {
+      const Interval range = type->params[i].range;
+      out.push_back({expr(given[i]), range.min, range.max});
+    }
+    return list(out);
   }
 
   const reflect::Unit* unit(const Field& field) {
@@ -178,7 +190,9 @@ class BuiltTables::Builder {
     if (!field.text) return nullptr;
     const Text& from = *field.text;
     return single<reflect::Text>({from.encoding, static_cast<std::int16_t>(from.terminator),
-                                  static_cast<std::int16_t>(from.padding), from.may_lack_its_end});
+                                  static_cast<std::int16_t>(from.padding), from.may_lack_its_end,
+                                  from.charset.empty() ? nullptr : text(from.charset),
+                                  static_cast<std::uint8_t>(from.unit)});
   }
 
   reflect::Field field(const Field& one) {
@@ -207,7 +221,9 @@ class BuiltTables::Builder {
             text(one.doc),
             characters(one),
             static_cast<std::uint8_t>(one.bit_width),
-            static_cast<std::uint8_t>(one.bit_shift)};
+            static_cast<std::uint8_t>(one.bit_shift),
+            expr(one.until),
+            is_struct && one.type ? arguments(one.type, one.arguments) : nullptr};
   }
 
   const reflect::Type* type(const Type& one) {
@@ -219,10 +235,12 @@ class BuiltTables::Builder {
       interpretations.push_back({field(*each), static_cast<std::uint16_t>(each->overlays)});
     }
     const std::int64_t am_type = one.am_types.empty() ? -1 : one.am_types.front();
-    return single<reflect::Type>({text(one.id), text(one.name), list(fields), count(fields),
-                                  list(interpretations), count(interpretations), one.min_size,
-                                  one.max_size, static_cast<std::int32_t>(am_type),
-                                  rule_of(one.requirement), text(one.doc), text(one.doc_ref)});
+    std::vector<const char*> params;
+    for (const Param& param : one.params) params.push_back(text(param.id));
+    return single<reflect::Type>(
+        {text(one.id), text(one.name), list(fields), count(fields), list(interpretations),
+         count(interpretations), one.min_size, one.max_size, static_cast<std::int32_t>(am_type),
+         rule_of(one.requirement), text(one.doc), text(one.doc_ref), list(params), few(params)});
   }
 
   const reflect::RouteTable* routes(const Spec& spec) {
@@ -248,7 +266,7 @@ class BuiltTables::Builder {
     for (const auto& one : spec.types) {
       // What nothing chooses comes as it is: a beacon, or all messages where there are no frames.
       const bool link = one->carrier == "radio_beacon" || one->carrier == "radio_command";
-      if (one->is_mask || !(bare || link)) continue;
+      if (one->is_mask || !(bare || link) || !one->params.empty()) continue;
       const char* carrier = bare ? "bare" : text(one->carrier);
       out.push_back({carrier, types_.at(one.get()), 0, one->max_size, nullptr, 0, nullptr, 0});
     }

@@ -1,4 +1,4 @@
-# expect: 11:15: unknown type 'two(1)'; arguments of types are not read
+# expect: 11:15: arguments for type 'two': 1; as many as its parameters were expected: 0
 # expect: 13:15: unknown type 'u8'; at most 4 bytes are read as a number; 'size: 8' keeps them
 meta:
   id: bad

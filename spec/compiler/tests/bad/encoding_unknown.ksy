@@ -1,5 +1,6 @@
-# expect: 11:15: text or a terminator in 'a'; bytes were expected; rubric --spec reads text
-# expect: 12:19: the encoding 'KOI8-R'; known are ASCII and UTF-8
+# expect: 12:15: text or a terminator in 'a'; bytes were expected; rubric --spec reads text
+# expect: 13:19: the encoding 'KLINGON'; known are ASCII, UTF-8, UTF-16LE, UTF-16BE, ISO-8859-1,
+#   windows-1252 and others that iconv -l names
 meta:
   id: bad
   endian: be
@@ -9,4 +10,4 @@ types:
     seq:
       - id: a
         type: strz
-        encoding: koi8-r
+        encoding: klingon

@@ -1,4 +1,6 @@
-# expect: 11:17: repeat is 'until'; expr or eos was expected
+# expect: 13:17: repeat: until without a condition; repeat-until: was expected
+# expect: 13:17: repeat: until; a count was expected, so that the size is known before; rubric
+#   --spec reads it
 meta:
   id: bad
   endian: be
