@@ -335,7 +335,7 @@ Load lone_load(const Expr& expr) {
   Load load;
   if (expr.count != 1 || expr.floats) return load;
   const Op op = expr.steps[0].op;
-  if (op == Op::kConst || op == Op::kParam) return load;
+  if (!is_load(op)) return load;
   load.lone = true;
   load.offset = static_cast<std::size_t>(expr.steps[0].value);
   const bool byte = op == Op::kLoadU8;

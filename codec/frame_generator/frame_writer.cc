@@ -32,9 +32,7 @@ std::uint32_t index32(std::size_t n) { return static_cast<std::uint32_t>(n); }
 
 // Returns the load of the one number that the expression is; null if it is more.
 const reflect::ExprStep* lone_step(const Expr& expr) {
-  const bool is_load =
-      expr.count == 1 && expr.steps[0].op >= Op::kLoadU8 && expr.steps[0].op <= Op::kLoadLe32;
-  return is_load ? &expr.steps[0] : nullptr;
+  return expr.count == 1 && is_load(expr.steps[0].op) ? &expr.steps[0] : nullptr;
 }
 
 std::uint32_t element_bytes(const Field& f) {
@@ -347,23 +345,21 @@ class FrameWriter {
   // Structures within structures.
 
   bool nested(const Field& f, const Place& place) {
-    const Type* type = f.type;
-    const reflect::Argument* arguments = f.arguments;
+    reflect::Chosen inner{f.type, f.arguments};
     if (f.choice) {
-      const reflect::Chosen chosen =
-          reflect::choose_with(*f.choice, value_of(f.choice->key, place));
-      type = chosen.type;
-      arguments = chosen.arguments;
+      inner = reflect::choose_with(*f.choice, value_of(f.choice->key, place));
       // A route that chooses leads to a message.
-      if (!type) return route_.choice_count == 0 && (f.extent == Extent::kOwn || opaque(f, place));
-      draft_.path.push_back(type);
+      if (!inner.type) {
+        return route_.choice_count == 0 && (f.extent == Extent::kOwn || opaque(f, place));
+      }
+      draft_.path.push_back(inner.type);
     }
-    if (same_message(type, route_.type) && size() == route_.offset) reached_ = true;
-    if (f.extent == Extent::kOwn) return call(*type, arguments, left(place), place);
+    if (same_message(inner.type, route_.type) && size() == route_.offset) reached_ = true;
+    if (f.extent == Extent::kOwn) return call(*inner.type, inner.arguments, left(place), place);
     const std::uint32_t part = add_part(PartKind::kRoom, f, place);
-    if (f.extent == Extent::kSize) return sized(f, {type, arguments}, part, place);
+    if (f.extent == Extent::kSize) return sized(f, inner, part, place);
     draft_.parts[part].open = true;
-    if (!call(*type, arguments, left(place), place)) return false;
+    if (!call(*inner.type, inner.arguments, left(place), place)) return false;
     if (!takes_all(part + 1)) stale(left(place));
     close_part(part);
     return true;

@@ -265,28 +265,25 @@ class Decoder {
 
   bool nested(const Field& f, std::uint32_t base, std::uint32_t& at, std::uint32_t end,
               std::uint32_t limit) {
-    const Type* type = f.type;
-    const Argument* arguments = f.arguments;
+    Chosen inner{f.type, f.arguments};
     if (f.choice) {
       const std::int64_t key = value_of(f.choice->key, base, limit);
-      const Chosen chosen = choose_with(*f.choice, key);
-      type = chosen.type;
-      arguments = chosen.arguments;
-      if (!type && f.extent == Extent::kOwn) {
+      inner = choose_with(*f.choice, key);
+      if (!inner.type && f.extent == Extent::kOwn) {
         if (end > at) push_note({NoteKind::kUnknownMessage, at, &f, nullptr, key});
         return true;
       }
-      if (!type) {
+      if (!inner.type) {
         if (more_ && base == 0 && radio_only(f, key, at, end)) return true;
         if (end > at) push_note({NoteKind::kUnknownMessage, at, &f, nullptr, key});
         push(NodeKind::kBytes, &f, at, end - at);
         at = end;
         return true;
       }
-      push_path(*type);
+      push_path(*inner.type);
     }
     const std::size_t index = count_;
-    if (!call(*type, arguments, f, {base, limit}, at, end)) return false;
+    if (!call(*inner.type, inner.arguments, f, {base, limit}, at, end)) return false;
     const std::uint32_t used = at + nodes_[index].size;
     if (f.extent == Extent::kOwn) {
       at = used;

@@ -375,23 +375,20 @@ class Encoder {
   }
 
   void nested(const Field& f, const Value& value, const Part& in, Limit limit) {
-    const Type* type = f.type;
-    const Argument* arguments = f.arguments;
+    Chosen inner{f.type, f.arguments};
     if (f.choice) {
       require_given(f.choice->key, in);
       const std::int64_t key = value_of(f.choice->key, in);
-      const Chosen chosen = choose_with(*f.choice, key);
-      type = chosen.type;
-      arguments = chosen.arguments;
-      if (!type && more_ && in.base == start_ && value.is(Value::Kind::kObject)) {
-        type = choose(*more_, key);
+      inner = choose_with(*f.choice, key);
+      if (!inner.type && more_ && in.base == start_ && value.is(Value::Kind::kObject)) {
+        inner.type = choose(*more_, key);
       }
-      if (!type) return opaque(f, &value, in, limit);
+      if (!inner.type) return opaque(f, &value, in, limit);
     }
     if (f.extent == Extent::kOwn) {
-      return structure(*type, values_of(*type, arguments, f, in), value, limit);
+      return structure(*inner.type, values_of(*inner.type, inner.arguments, f, in), value, limit);
     }
-    part(f, {type, arguments}, value, in, limit);
+    part(f, inner, value, in, limit);
   }
 
   /// Encodes a structure whose size is given elsewhere; stale bytes may follow its content.

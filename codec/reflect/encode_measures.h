@@ -67,7 +67,7 @@ class Measures {
   /// Returns a measure that `expr` reads and that is missing; null if there is none.
   const Measure* missing_in(const Expr& expr, const Part& in) {
     for (int i = 0; i < expr.count; ++i) {
-      if (!is_load(expr.steps[i])) continue;
+      if (!is_load(expr.steps[i].op)) continue;
       const Measure* measure = find(in.place(expr.steps[i]));
       if (measure && measure->missing) return measure;
     }
@@ -83,13 +83,10 @@ class Measures {
   }
 
  private:
-  static bool is_load(const ExprStep& step) {
-    return step.op >= Op::kLoadU8 && step.op <= Op::kLoadLe32;
-  }
   static const ExprStep* only_load(const Expr& expr) {
     const ExprStep* found = nullptr;
     for (int i = 0; i < expr.count; ++i) {
-      if (!is_load(expr.steps[i])) continue;
+      if (!is_load(expr.steps[i].op)) continue;
       if (found) return nullptr;
       found = &expr.steps[i];
     }

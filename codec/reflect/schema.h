@@ -55,6 +55,8 @@ enum class Op : uint8_t {
   kNot,
   kParam,  ///< Only in specs that are read at run time.
 };
+/// Returns whether a step puts a number of the frame on the stack.
+constexpr bool is_load(Op op) { return op >= Op::kLoadU8 && op <= Op::kLoadLe32; }
 struct ExprStep {
   Op op;
   int32_t value;  ///< The constant, the offset in bytes of a load, or the number of a parameter.

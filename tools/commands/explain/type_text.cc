@@ -25,9 +25,7 @@ using reflect::Type;
 namespace {
 
 /// Returns whether the expression is the number of a field alone.
-bool is_load(const reflect::Expr& expr) {
-  return expr.count == 1 && expr.steps[0].op != reflect::Op::kParam;
-}
+bool is_number(const reflect::Expr& expr) { return expr.count == 1 && is_load(expr.steps[0].op); }
 
 template <class T>
 void add_once(std::vector<const T*>& list, const T* item) {
@@ -80,7 +78,7 @@ class Layout {
 
   void add_choice(const Type& owner, const Field& f, const std::string& path) {
     const Field* key_field = nullptr;
-    if (is_load(f.choice->key)) path_of(f.choice->key.steps[0], owner, &key_field);
+    if (is_number(f.choice->key)) path_of(f.choice->key.steps[0], owner, &key_field);
     const EnumTable* names = key_field ? key_field->enumeration : nullptr;
     choices_ += fmt::format("\n  {} by {}", path, expr_text(f.choice->key, owner));
     if (f.condition.count) choices_ += fmt::format(", if {}", expr_text(f.condition, owner));
@@ -451,7 +449,7 @@ bool leads_to(const Field& f, const Type& message, Reach& reach) {
   reach.otherwise = f.choice->otherwise == &message;
   if (reach.values.empty() && !reach.otherwise) return false;
   reach.key = expr_text(f.choice->key, *reach.parent);
-  if (is_load(f.choice->key)) {
+  if (is_number(f.choice->key)) {
     path_of(f.choice->key.steps[0], *reach.parent, &reach.key_field);
   }
   return true;
