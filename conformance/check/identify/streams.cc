@@ -53,6 +53,10 @@ bool Stream::renews(const Stream& other, bool even, bool request) const {
   return same && (even || joins || frames >= kLifeFrames);
 }
 
+bool Stream::asked_for(const Observation& seen, const IslandHint& hint) const {
+  return seen.frame.type == am::kAckJoin && hint.join == join;
+}
+
 Streams::Streams(const Run& run, const Options& options)
     : run_(run),
       given_(options),
@@ -96,7 +100,7 @@ int Streams::score(const Stream& stream, const Observation& seen, const IslandHi
   const auto ahead = static_cast<std::uint8_t>(seen.dsn - stream.dsn);
   if (ahead == 0 || ahead > kGapMax) return kNoMatch;
   int points = ahead == 1 ? kNextDsn : kNearDsn;
-  if (seen.frame.type == am::kAckJoin && hint.join == stream.join) points += kAsked;
+  if (stream.asked_for(seen, hint)) points += kAsked;
   if (stream.island == kNoIsland) return points;
   // Motes of two islands may have the same id; but one mote may also change its island.
   if (!stream.sink) {
@@ -143,10 +147,11 @@ std::uint16_t Streams::assign(std::uint32_t index, bool& repeat) {
     int points = score(stream, seen, hint);
     if (points == kNoMatch) continue;
     const bool request = seen.frame.type == am::kJoin;
-    // It is alive, and has a namesake, if this ack_join has the number that it asked with.
-    const bool alive = seen.frame.type == am::kAckJoin && hint.join == stream.join;
-    if (best != kLast && !alive && streams_[best].renews(stream, points == best_score, request))
+    // What was asked for shows that it is alive, and that the newer one is its namesake.
+    if (best != kLast && !stream.asked_for(seen, hint) &&
+        streams_[best].renews(stream, points == best_score, request)) {
       continue;
+    }
     const bool stray =
         stream.frames == 1 && frames_of_[seen.frame.src] - stream.last_of_am > kStrayAfter;
     if (!stray) ++candidates;

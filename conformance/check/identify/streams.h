@@ -55,6 +55,8 @@ struct Stream {
   /// began: then a frame that could be of both is of this one. `even`: it fits both as well;
   /// `request`: it is a join_request, which shows no island.
   bool renews(const Stream& other, bool even, bool request) const;
+  /// Returns whether the frame is an ack_join with the number that the stream asked with.
+  bool asked_for(const Observation& seen, const IslandHint& hint) const;
 };
 
 /// Assigns frames to streams, one after the other.

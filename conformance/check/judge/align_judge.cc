@@ -274,8 +274,8 @@ const LoggedNode* logged_of(const Run& run, const Finding& finding) {
   return its != run.nodes.end() ? &*its : nullptr;
 }
 
-// Returns the findings of captures about nodes whose logs had not begun then, or were over: what
-// such a log does not say, nobody has recorded.
+// Returns the findings of captures about nodes whose logs had not begun then, or were over. Nobody
+// has recorded what happened in such a node at that time.
 std::vector<Finding*> unlogged(const Run& run, Report& report) {
   using Span = std::pair<std::int64_t, std::int64_t>;
   std::map<std::uint32_t, Span> logs;

@@ -114,8 +114,7 @@ struct Context {
   }
   /// Returns until when the node's log goes on beside captures, which may be longer.
   std::int64_t log_end_us(std::uint16_t node) const {
-    const bool cut = node < logs_us_.size() && captured_ && !device(node).hearing;
-    return cut ? logs_us_[node].second : INT64_MAX;
+    return logs_beside_captures(node) ? logs_us_[node].second : INT64_MAX;
   }
   /// Returns whether captures that show what the node sends, as its log does not, began later.
   bool before_captures(std::uint16_t node, std::int64_t time_us) const {
@@ -123,8 +122,7 @@ struct Context {
   }
   /// Returns until when they do.
   std::int64_t captures_end_us(std::uint16_t node) const {
-    const bool cut = node < logs_us_.size() && captured_ && !device(node).hearing;
-    return cut ? captured_->second : INT64_MAX;
+    return logs_beside_captures(node) ? captured_->second : INT64_MAX;
   }
   /// Returns whether an event at the application of the node that is due by then would be in its
   /// log: that has what the node was given, or events of this kind, and goes on.
@@ -243,6 +241,10 @@ struct Context {
   std::vector<std::set<std::size_t>> told_;  // Which kinds of events its application got.
   Terms unlogged_;
 
+  // Returns whether the node has a log, and captures alone show what it sends.
+  bool logs_beside_captures(std::uint16_t node) const {
+    return node < logs_us_.size() && captured_ && !device(node).hearing;
+  }
   int backlog_of(std::uint16_t node, std::size_t index) const;
   int backlog(std::uint16_t node, std::int64_t time_us) const;
   /// Findings that are told as one.

@@ -105,10 +105,9 @@ void Originals::told(std::uint16_t node, const Observation& seen, const machine:
                            (device.role == Role::kBaseStation && !logs_peis(context_.run, node));
     const bool forgotten = ring.size() + 1 >= ring.kMost && awaits(node, ring.oldest(0), now);
     bool before = context_.begun_before(node, now, patience_us(node));
-    for (std::size_t i = 0; i < calls_[node].size(); ++i) {  // It may have left unseen.
+    for (std::size_t i = 0; !before && i < calls_[node].size(); ++i) {  // It may have left unseen.
       const Call& call = calls_[node].newest(i);
-      before = before ||
-               (call.result == ack.seq_num && context_.before_captures(node, call.place.time_us));
+      before = call.result == ack.seq_num && context_.before_captures(node, call.place.time_us);
     }
     const bool came = heard_ack(node, ack.seq_num, [](const Net&) { return true; });
     context_.report(came || !ack.success ? "T3-MATCH"_rule : "T3-SUCCESS"_rule,
@@ -220,17 +219,14 @@ void Originals::close(std::uint16_t node, std::size_t newest, std::int64_t now_u
   const std::int64_t timeouts = context_.device(node).whole ? 1 : kTimeouts;
   const std::int64_t timeout_us = timeouts * context_.ack_timeout_us(node);
   if (now_us <= context_.due_us(node, sent.place.time_us + timeout_us)) return;
-  // A log that ended before says nothing.
   const std::int64_t forever_us = kForever * context_.ack_timeout_us(node);
   const bool stated = context_.ack_timeout_stated(node);
+  // A log that ended before says nothing.
   const bool logged = context_.log_end_us(node) - sent.place.time_us >
                       (stated ? timeout_us + context_.response_us(node) : forever_us);
-  context_.report("T3-ONCE"_rule,
-                  logged && (context_.ack_timeout_stated(node) ||
-                             waited > kForever * context_.ack_timeout_us(node))
-                      ? Severity::kFail
-                      : Severity::kInconclusive,
-                  sent.place, node,
+  const bool sure = logged && (stated || waited > forever_us);
+  context_.report("T3-ONCE"_rule, sure ? Severity::kFail : Severity::kInconclusive, sent.place,
+                  node,
                   {"No receive_ack for " + name_of(sent.net) + " in " + ms_text(waited) + ".",
                    "receive_ack(failure) at the timeout, or receive_ack(success) before.",
                    {}});
