@@ -235,7 +235,7 @@ class Run {
       if (found == InputFormat::kUnknown && (!bare || is_hex_dump(beginning))) {
         return complain(unknown_format(beginning));
       }
-      if (bare && (found == InputFormat::kPcap || found == InputFormat::kPcapng)) {
+      if (bare && is_capture(found)) {
         return complain(
             fmt::format("this is {}; --as takes a message alone (--input-format bare "
                         "reads the file as one)",
@@ -252,9 +252,9 @@ class Run {
     std::unique_ptr<Reader> reader = make_reader(reading.format, reading.options);
     source_.format = format_name(reading.format);
     pump(file, *reader, size);
-    const bool capture =
-        reading.format == InputFormat::kPcap || reading.format == InputFormat::kPcapng;
-    if (capture && source_.number == 0 && !options_.follow) remark("holds no packets");
+    if (is_capture(reading.format) && source_.number == 0 && !options_.follow) {
+      remark("holds no packets");
+    }
     say_what_is_left_out(*reader);
   }
 

@@ -83,9 +83,7 @@ void choose_radio_text(const InputOptions& options, Bytes beginning, Reading& re
 // Decides what ends the radio frames of a capture file.
 void choose_fcs(const InputOptions& options, Bytes beginning, Reading& reading) {
   reading.fcs = fcs_kind(options.fcs);
-  const bool capture =
-      reading.format == InputFormat::kPcap || reading.format == InputFormat::kPcapng;
-  if (options.fcs != "auto" || !capture) return;
+  if (options.fcs != "auto" || !is_capture(reading.format)) return;
   FcsGuess guess;
   auto look = [&](const Packet& packet) { guess.take(packet); };
   make_reader(reading.format, reading.options)->feed(beginning, look);
@@ -110,6 +108,10 @@ void choose_fcs(const InputOptions& options, Bytes beginning, Reading& reading) 
 
 bool is_text(InputFormat format) {
   return format == InputFormat::kHex || format == InputFormat::kLog;
+}
+
+bool is_capture(InputFormat format) {
+  return format == InputFormat::kPcap || format == InputFormat::kPcapng;
 }
 
 std::string_view format_name(InputFormat format) {

@@ -21,6 +21,9 @@ struct Reading {
 /// Returns whether its lines are the packets.
 bool is_text(InputFormat format);
 
+/// Returns whether it is a capture file, pcap or pcapng.
+bool is_capture(InputFormat format);
+
 /// Returns how an input that begins with these bytes is read.
 Reading reading_of(const InputOptions& options, Bytes beginning);
 
