@@ -95,7 +95,9 @@ class Identifier {
       sniffed_ = true;
       if (seen.frame.type == am::kJoin) remember_request(seen);
       roles_.look(seen.frame, index);
-      mark.device = streams_.assign(index, mark.repeat);  // A stream so far.
+      std::uint32_t taken_back = index;
+      mark.device = streams_.assign(index, mark.repeat, taken_back);  // A stream so far.
+      if (taken_back != index) out_.marks[taken_back].device = kNobody;
       return;
     }
     if (seen.kind == Observation::Kind::kSerial) {

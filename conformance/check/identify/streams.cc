@@ -120,7 +120,24 @@ int Streams::score(const Stream& stream, const Observation& seen, const IslandHi
   return points;
 }
 
-std::uint16_t Streams::assign(std::uint32_t index, bool& repeat) {
+bool Streams::takes_back(Stream& stream, const Observation& seen, const IslandHint& hint) const {
+  if (!stream.sink || stream.loose == 0 || stream.dsn != seen.dsn || hint.strong == kNoIsland ||
+      hint.strong != stream.island) {
+    return false;
+  }
+  bool follows = false;  // The loose frame may be of another stream.
+  for (std::uint16_t i = first_of_[stream.am]; i != kLast && !follows; i = next_[i]) {
+    const auto ahead = static_cast<std::uint8_t>(seen.dsn - streams_[i].dsn);
+    follows = streams_[i].sink && ahead >= 1 && ahead <= kGapMax;
+  }
+  if (!follows) return false;
+  stream.dsn = static_cast<std::uint8_t>(seen.dsn - stream.loose);
+  stream.loose = 0;
+  --stream.frames;
+  return true;
+}
+
+std::uint16_t Streams::assign(std::uint32_t index, bool& repeat, std::uint32_t& taken_back) {
   const Observation& seen = run_.seen[index];
   const std::int64_t now = seen.place.time_us;
   const IslandHint hint = hint_of(seen.frame);
@@ -144,6 +161,7 @@ std::uint16_t Streams::assign(std::uint32_t index, bool& repeat) {
       stream.last_us = now;
       return i;
     }
+    if (takes_back(stream, seen, hint)) taken_back = stream.last;
     int points = score(stream, seen, hint);
     if (points == kNoMatch) continue;
     const bool request = seen.frame.type == am::kJoin;
@@ -178,6 +196,7 @@ std::uint16_t Streams::assign(std::uint32_t index, bool& repeat) {
   if (ahead != 1) add_hole(stream, now, ahead == 2 ? std::optional(before) : std::nullopt);
   ++stream.frames;
   go_on(stream, index, hint);
+  stream.loose = candidates > 1 && hint.strong == kNoIsland ? ahead : 0;
   return best;
 }
 

@@ -41,6 +41,7 @@ struct Stream {
   std::int64_t first_us = 0;
   std::int64_t last_us = 0;
   std::uint64_t frames = 0;
+  std::uint8_t loose = 0;        ///< How far its last frame is ahead, if it may be another's; or 0.
   std::uint32_t last_of_am = 0;  ///< Frames of its address before its last one.
   /// Frames that were missed between two times.
   struct Hole {
@@ -64,8 +65,9 @@ class Streams {
  public:
   Streams(const Run& run, const Options& options);
   /// Returns the stream of observation `index`, a radio frame with DSN; kNobody if it could be of
-  /// two.
-  std::uint16_t assign(std::uint32_t index, bool& repeat);
+  /// two. Sets `repeat` if it is a copy of the frame before, and `taken_back` to an observation
+  /// that was assigned, and is now of nobody, as this one shows that it was of another stream.
+  std::uint16_t assign(std::uint32_t index, bool& repeat, std::uint32_t& taken_back);
   const std::vector<Stream>& all() const { return streams_; }
   /// Returns how many frames belong to none since there are as many streams as are kept.
   std::uint64_t left_out() const { return left_out_; }
@@ -82,6 +84,9 @@ class Streams {
   IslandHint hint_of(const machine::Frame& frame) const;
   void guess_island(Stream& stream, std::uint32_t index, const IslandHint& hint) const;
   int score(const Stream& stream, const Observation& seen, const IslandHint& hint) const;
+  // Returns whether a sink's plain frame has the number of the stream's last one, which could have
+  // been another sink's: then that frame is taken from the stream.
+  bool takes_back(Stream& stream, const Observation& seen, const IslandHint& hint) const;
   std::uint16_t open(std::uint32_t index, const IslandHint& hint);
   void go_on(Stream& stream, std::uint32_t index, const IslandHint& hint);
   // Assigns a frame of Run::past, whose sender is known.

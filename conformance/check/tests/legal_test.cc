@@ -82,6 +82,7 @@ TEST(Legal, NoAlarmComesBack) {
       {"same_devid", 323, "exact"},               // A message of the namesake in the other island.
       {"in_full", 634, "exact"},                  // A buffer filled over the response time.
       {"host_loops_radiated", 975, "exact"},      // The other sink's own message.
+      {"host_loops_radiated", 974, "exact"},      // The other sink has the same DSN.
       {"ack_join_often", 12, "drops_and_steps"},  // A step between repeats; the reply was dropped.
       {"stated_slow", 13, "steps_forth"},         // A step among reactions that all are slow.
       {"link_ack_lost_same_dsn", 237, "steps_forth"},  // A step between a frame and its copy.
