@@ -71,7 +71,8 @@ Contradiction contradiction(const Case& one, const NodeHeader& node, const State
   } else if (stated.id == ParameterId::kGoneAfter && node.role != Role::kMote) {
     needed = longest(one, statement);  // Its motes stay, however silent they are.
   }
-  return contradiction({stated.id, needed, parameter(stated.id).max}, stated);
+  const std::int64_t most = parameter(stated.id).max;
+  return contradiction({stated.id, std::min(needed, most), most}, stated);  // Or to be refused.
 }
 
 }  // namespace

@@ -150,6 +150,9 @@ class Running(Folder):
         self.assertEqual(code, 0, out)
         self.assertIn("the case is for channels=2..8, and channels=1 is stated",
                       " ".join(out.split()))
+        # Who states the longest list is tried with one mote more than it can list.
+        out = test("--target", "machine", "--state", "members=20", "--cases", "j3.full_list")[1]
+        self.assertRegex(out, r"rubric_machine: 1 pass\.")
 
     def test_statements_that_make_no_sense(self):
         for word, why in (("ack_timout=2000", "known are response, join_period, join_requests"),

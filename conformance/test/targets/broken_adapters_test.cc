@@ -271,31 +271,46 @@ TEST_F(BrokenAdapters, RealTimeAdapterIsWaitedFor) {
   EXPECT_EQ(result.verdict, CaseVerdict::kPass) << result.reason;
 }
 
-// One sink forgets how many members it was asked to have, one takes any parameter, one states it.
-TEST_F(BrokenAdapters, ASinkIsHeldToTheMembersThatItIsAskedFor) {
-  const std::string name = "j3.full_list_as_stated";
+// One node forgets what it was asked to be, one takes any parameter, one states it and is not so.
+TEST_F(BrokenAdapters, ANodeIsHeldToWhatItIsAskedFor) {
   const auto files = runner::load_cases("conformance/cases");
-  const auto file = std::ranges::find_if(
-      files, [&](const trace::Parsed& one) { return one.file.find(name) != nullptr; });
-  ASSERT_NE(file, files.end());
-  const auto run = [&](const std::string& filter, const trace::Statement& stated) {
-    Options options{.stated = stated};
-    const auto sink =
-        attach(fmt::format("sed -u {} | {}", filter, RUBRIC_MACHINE_ADAPTER), options);
-    return runner::run_case(file->file, *file->file.find(name),
-                            [&](const trace::NodeHeader&) { return sink->target(); });
+  struct Row {
+    const char* name;
+    const char* parameter;
+    trace::ParameterId id;
+    const char* rule;
+    CaseVerdict verdict = CaseVerdict::kFail;
   };
-  EXPECT_EQ(run("-n p", {}).verdict, CaseVerdict::kPass);
-  const CaseResult forgets = run("'s/ members=2$//'", {});
-  EXPECT_EQ(forgets.verdict, CaseVerdict::kFail);
-  ASSERT_FALSE(forgets.failures.empty());
-  EXPECT_EQ(forgets.failures.back().requirements, std::vector<std::string>{"J6-ADD"});
-  const CaseResult takes_all = run("'s/ members=.*//'", {});
-  EXPECT_EQ(takes_all.verdict, CaseVerdict::kSkip);
-  EXPECT_TRUE(takes_all.not_built);
-  EXPECT_NE(takes_all.reason.find("takes whatever it is told"), std::string::npos);
-  const CaseResult states = run("-n p", {{trace::ParameterId::kMembers, 2}});
-  EXPECT_EQ(states.verdict, CaseVerdict::kFail) << "It lists twenty.";
+  for (const auto& [name, parameter, id, rule, verdict] : {
+           Row{"j3.full_list_as_stated", "members", trace::ParameterId::kMembers, "J6-ADD"},
+           Row{"j8.limit_as_stated", "join_requests", trace::ParameterId::kJoinRequests,
+               "J8-LIMIT"},
+           Row{"j4.few_as_stated", "ack_joins", trace::ParameterId::kAckJoins, "J4-FEW",
+               CaseVerdict::kWeak},
+       }) {
+    SCOPED_TRACE(name);
+    const auto file = std::ranges::find_if(
+        files, [&](const trace::Parsed& one) { return one.file.find(name) != nullptr; });
+    ASSERT_NE(file, files.end());
+    const auto run = [&](const std::string& filter, const trace::Statement& stated) {
+      Options options{.stated = stated};
+      const auto node =
+          attach(fmt::format("sed -u {} | {}", filter, RUBRIC_MACHINE_ADAPTER), options);
+      return runner::run_case(file->file, *file->file.find(name),
+                              [&](const trace::NodeHeader&) { return node->target(); });
+    };
+    EXPECT_EQ(run("-n p", {}).verdict, CaseVerdict::kPass);
+    const CaseResult forgets = run(fmt::format("'s/ {}=2$//'", parameter), {});
+    EXPECT_EQ(forgets.verdict, verdict);
+    EXPECT_TRUE(std::ranges::any_of(forgets.failures, [&](const runner::Failure& failure) {
+      return failure.requirements == std::vector<std::string>{rule};
+    }));
+    const CaseResult takes_all = run(fmt::format("'s/ {}=.*//'", parameter), {});
+    EXPECT_EQ(takes_all.verdict, CaseVerdict::kSkip);
+    EXPECT_TRUE(takes_all.not_built);
+    EXPECT_NE(takes_all.reason.find("takes whatever it is told"), std::string::npos);
+    EXPECT_EQ(run("-n p", {{id, 2}}).verdict, verdict) << "It is built otherwise.";
+  }
 }
 
 // A node that no `reset` can give other buffers passes where it is not asked for them.
