@@ -17,7 +17,7 @@ struct CaseUse {
 };
 
 /// By file, then as they stand there; each case once for a rule and a sign.
-inline constexpr std::array<CaseUse, 2571> kCaseUses{{
+inline constexpr std::array<CaseUse, 2577> kCaseUses{{
     {"after_set_island.base_station",
      "conformance/cases/after_set_island.rtr", "N9-SET"_rule, false},
     {"after_set_island.base_station",
@@ -798,6 +798,8 @@ inline constexpr std::array<CaseUse, 2571> kCaseUses{{
     {"j4.repeat_at_most_twenty", "conformance/cases/j4_repeat.rtr", "J4-REPEAT"_rule, true},
     {"j4.few", "conformance/cases/j4_repeat.rtr", "J4-ACK"_rule, false},
     {"j4.few", "conformance/cases/j4_repeat.rtr", "J4-FEW"_rule, true},
+    {"j4.few_as_stated", "conformance/cases/j4_repeat.rtr", "J4-ACK"_rule, false},
+    {"j4.few_as_stated", "conformance/cases/j4_repeat.rtr", "J4-FEW"_rule, true},
     {"j5.success", "conformance/cases/j5.rtr", "J5-SUCCESS"_rule, false},
     {"j5.success", "conformance/cases/j5.rtr", "J5-ONCE"_rule, true},
     {"j5.success", "conformance/cases/j5.rtr", "J5-STOP"_rule, true},
@@ -842,6 +844,10 @@ inline constexpr std::array<CaseUse, 2571> kCaseUses{{
     {"j8.fail", "conformance/cases/j8.rtr", "J8-FAIL"_rule, true},
     {"j8.fail", "conformance/cases/j8.rtr", "J8-FAIL"_rule, false},
     {"j8.fail", "conformance/cases/j8.rtr", "J8-LIMIT"_rule, true},
+    {"j8.limit_as_stated", "conformance/cases/j8.rtr", "J8-RETRY"_rule, false},
+    {"j8.limit_as_stated", "conformance/cases/j8.rtr", "J8-FAIL"_rule, true},
+    {"j8.limit_as_stated", "conformance/cases/j8.rtr", "J8-FAIL"_rule, false},
+    {"j8.limit_as_stated", "conformance/cases/j8.rtr", "J8-LIMIT"_rule, true},
     {"j8.at_most_five", "conformance/cases/j8.rtr", "J8-LIMIT"_rule, true},
     {"j8.at_most_five", "conformance/cases/j8.rtr", "J8-FAIL"_rule, true},
     {"j8.again_after_fail", "conformance/cases/j8.rtr", "J8-FAIL"_rule, false},

@@ -23,7 +23,8 @@ class Adapter:
             return "hello rct/1 rubric_python_mote 1.0 roles=mote time=virtual"
         if command == "reset" and words[0] == "mote":
             settings = dict(word.split("=") for word in words[1:])
-            if unknown := settings.keys() - {"id", "island", "channels", "seed", "profile"}:
+            known = {"id", "island", "channels", "seed", "profile", "join_requests", "ack_joins"}
+            if unknown := settings.keys() - known:
                 return f"unsupported {' '.join(sorted(unknown))}"
             self.now = 0
             self.mote = Mote(self, settings)

@@ -71,6 +71,7 @@ class Mote:
     def __init__(self, world, settings):
         self.world, self.device, self.busy = world, int(settings["id"]), False
         self.room = int(settings["channels"])
+        self.requests_max = int(settings.get("join_requests", REQUESTS))
         self.number = (1000 + 257 * int(settings["seed"])) & 0xFFFF
         self.start()
 
@@ -206,7 +207,7 @@ class Mote:
         self.transmit(SINK_AM, JOIN, struct.pack(">H", self.request) + self.descriptor)
 
     def join_timer(self):
-        if self.requests < REQUESTS:
+        if self.requests < self.requests_max:
             self.send_request()
         else:
             self.request = None
