@@ -8,6 +8,12 @@ namespace rubric::check {
 using machine::JoinMote;
 using Phase = JoinMote::Phase;
 
+namespace {
+
+constexpr std::int64_t kConfirmUs = 150'000;  // Golden traces give a link so long to confirm.
+
+}  // namespace
+
 JoinCalls::JoinCalls(Context& context, MoteJoins& motes, std::size_t devices)
     : context_(context), motes_(motes), calls_(devices) {
   // Only a log that has join calls, or is whole, surely shows that there was none.
@@ -121,6 +127,7 @@ void JoinCalls::called(std::uint16_t mote, const Observation& seen,
 }
 
 void JoinCalls::radio_set(std::uint16_t mote, bool on, std::int64_t now_us) {
+  judge_silent(mote, now_us);
   Calls& calls = calls_[mote];
   if (calls.off_since_us >= 0) calls.off_us += now_us - calls.off_since_us;
   calls.off_since_us = on ? -1 : now_us;
@@ -284,25 +291,36 @@ void JoinCalls::told(std::uint16_t mote, const Observation& seen, const machine:
                   seen.place, mote, std::move(said));
 }
 
+// Returns when at the latest the mote had joined: it answers within the response time and may wait
+// until its link has confirmed ack_join, or it gives up (decision 102). Once ack_join has left,
+// what comes later, a busy channel for one, excuses nothing.
+std::int64_t JoinCalls::joined_us(std::uint16_t mote, const MoteHypothesis& h,
+                                  std::int64_t now_us) const {
+  const bool answered = h.acks_seen > 0 && h.acked_us >= h.accepted_us;
+  std::int64_t link_us = -1;
+  for (const std::int64_t time_us : context_.run.nodes[mote].link_failures_us) {
+    if (time_us <= now_us) link_us = time_us;
+  }
+  for (const std::int64_t time_us : context_.run.nodes[mote].link_acks_us) {
+    if (!answered || time_us < h.acked_us) continue;
+    if (time_us <= now_us) link_us = time_us;
+    break;
+  }
+  return std::max(link_us,
+                  answered ? h.acked_us + kConfirmUs : h.accepted_us + context_.response_us(mote));
+}
+
 // Reports a success that by a whole log is told later than in a golden trace, whichever state of
 // `set` the mote was in. Returns whether it was.
 bool JoinCalls::judge_late(std::uint16_t mote, const Observation& seen,
                            const std::vector<MoteHypothesis>& set) {
   if (!context_.device(mote).whole || !context_.run.has_time || set.empty()) return false;
-  // It may wait until its link has confirmed ack_join, or it gives up (decision 102).
-  std::int64_t failed_us = -1;
-  for (const std::int64_t time_us : context_.run.nodes[mote].link_failures_us) {
-    if (time_us <= seen.place.time_us) failed_us = time_us;
-  }
-  const auto joined_us = [failed_us](const MoteHypothesis& h) {
-    return std::max({h.accepted_us, h.acked_us, failed_us});
-  };
+  const std::int64_t now = seen.place.time_us;
   for (const MoteHypothesis& h : set) {
     if (h.unknown || h.told) return false;
-    const std::int64_t from_us = joined_us(h) + context_.response_us(mote);
-    if (seen.place.time_us <= context_.due_us(mote, from_us)) return false;
+    if (now <= context_.due_us(mote, joined_us(mote, h, now))) return false;
   }
-  const std::int64_t took_us = seen.place.time_us - joined_us(set.back());
+  const std::int64_t took_us = now - joined_us(mote, set.back(), now);
   context_.report("J5-SUCCESS"_rule, Severity::kFail, seen.place, mote,
                   {"joined(" + text_of(set.back().join.address) + ", SUCCESS) " + ms_text(took_us) +
                        " after the mote had joined.",
@@ -319,8 +337,8 @@ void JoinCalls::judge_member(std::uint16_t mote, const MoteHypothesis& h, std::i
   // Unconfirmed, the call may wait for the end of all its requests, and fail (decision 102).
   // In a whole log it has the time of a golden trace.
   const bool whole = context_.device(mote).whole;
-  const std::int64_t joined_us = std::max(h.accepted_us, h.acked_us) + context_.response_us(mote);
-  const std::int64_t over_us = whole ? joined_us : std::max(last_expiry_us(mote, h), h.acked_us);
+  const std::int64_t over_us =
+      whole ? joined_us(mote, h, end_us) : std::max(last_expiry_us(mote, h), h.acked_us);
   const std::int64_t due_us = context_.due_us(mote, again ? calls.called.time_us : over_us);
   if (end_us <= due_us || !context_.tells_any(mote, due_us)) return;
   context_.report(

@@ -54,6 +54,7 @@ class JoinCalls {
   bool judge_late(std::uint16_t mote, const Observation& seen,
                   const std::vector<MoteHypothesis>& set);
   std::string fails_by(std::uint16_t mote) const;
+  std::int64_t joined_us(std::uint16_t mote, const MoteHypothesis& h, std::int64_t now_us) const;
   std::int64_t last_expiry_us(std::uint16_t mote, const MoteHypothesis& h) const;
 
   Context& context_;
