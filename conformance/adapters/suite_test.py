@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """An implementation that ships passes every case that its roles can play, and skips only others.
 
-Usage: suite_test.py [--page FILE] [--without PARAMETER ...] RUBRIC TARGET [option of rubric test ...]
+Usage: suite_test.py [--page FILE] [--without PARAMETER ...] RUBRIC TARGET [option of rubric test]
 With --page the counts that are printed have to be in that file. With --without=PARAMETER it skips
 the cases for nodes that are built with such a parameter, too.
 """
