@@ -106,7 +106,7 @@ class Command {
   Command(const Command&) = delete;
 
   Command& add_subcommand(const std::string& name, const std::string& description);
-  /// Adds an option; `names` as in "-o,--output" or, for a positional argument, "FILE". Targets are
+  /// Adds an option; `names` as in "-o,--out" or, for a positional argument, "FILE". Targets are
   /// texts, whole and floating-point numbers, std::optional of these, and vectors of texts.
   template <class Target>
   Option add_option(const std::string& names, Target& target, const std::string& description = {});

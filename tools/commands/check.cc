@@ -227,7 +227,7 @@ void add_options(cli::Command& command, CheckOptions& options) {
       .add_option("--expect", options.expect,
                   "Read known failures with their reasons from this YAML file")
       .check(cli::given);
-  command.add_option("--out", options.out, "Write to this file; - is stdout")
+  command.add_option("-o,--out", options.out, "Write to this file; - is stdout")
       .check(cli::given)
       .show_default();
   command

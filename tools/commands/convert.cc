@@ -182,8 +182,7 @@ void add_convert(cli::Command& app) {
       "FILE", options->input.files,
       "Captures, and last the target unless -o names it; - is stdin or stdout. Names that "
       "end in .gz or .zst are written compressed");
-  sub.add_option("-o,--output", options->output, "Write to this file; - is stdout")
-      .check(cli::given);
+  sub.add_option("-o,--out", options->output, "Write to this file; - is stdout").check(cli::given);
   sub.add_option("--format", options->format,
                  "Write hex, hdlc, sf, pcap or pcapng (default: by the target's suffix)")
       .one_of(encode::container_names());

@@ -79,12 +79,12 @@ void add_encode(cli::Command& app) {
   sub.add_option("--format", options->format, "Write hex, hdlc, sf, pcap or pcapng")
       .one_of(encode::container_names())
       .show_default();
-  sub.add_option("-o,--output", options->output, "Write to this file; - is stdout")
+  sub.add_option("-o,--out", options->output, "Write to this file; - is stdout")
       .check(cli::given)
       .show_default();
   sub.exit_code_of([options] {
     encode::check_line_options(options->lines);
-    cli::keep_apart("--output", options->output, cli::all_inputs(options->lines.input));
+    cli::keep_apart("--out", options->output, cli::all_inputs(options->lines.input));
     return run_encode(*options);
   });
 }

@@ -447,7 +447,8 @@ void add_explore(cli::Command& app) {
                  "Print text or json; transitions also as dot (Graphviz)")
       .one_of({"text", "json", "dot"})
       .show_default();
-  sub.add_option("--out", options->out, "Write the shortest trace to this file (default: stdout)");
+  sub.add_option("-o,--out", options->out,
+                 "Write the shortest trace to this file (default: stdout)");
   add_transition_options(sub, options->transitions);
   sub.add_option("--out-known", options->weakness_out,
                  "Write the shortest way to a known weakness to this file");

@@ -322,7 +322,7 @@ std::string share(const std::string& text) {
 
 void check_outputs(const GenerateOptions& options) {
   for (const std::string& file : cli::files_in(options.input.spec)) {
-    cli::keep_apart("--output", options.output, {file});
+    cli::keep_apart("--out", options.output, {file});
     cli::keep_apart("--expect", options.expect, {file});
   }
   if (options.expect.empty()) return;
@@ -353,7 +353,7 @@ void add_generate(cli::Command& app) {
       .show_default();
   cli::add_spec_option(sub, options->input);
   sub.add_option("--message", options->messages, "Make only these messages").check(cli::given);
-  sub.add_option("-o,--output", options->output, "Write to this file; - is stdout")
+  sub.add_option("-o,--out", options->output, "Write to this file; - is stdout")
       .check(cli::given)
       .show_default();
   sub.add_option("--expect", options->expect,

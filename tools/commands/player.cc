@@ -22,7 +22,7 @@
 namespace rubric::tools {
 
 void add_player_options(cli::Command& app, PlayerOptions& options) {
-  app.add_option("--out", options.out, "Write the trace to this file; - is stdout")
+  app.add_option("-o,--out", options.out, "Write the trace to this file; - is stdout")
       .check(cli::given)
       .show_default();
   app.add_option("--timeout", options.timeout_seconds,

@@ -423,7 +423,7 @@ void add_options(cli::Command& command, TestOptions& options) {
   command.add_option("--format", options.format, "Print text, json (rubric.test/1), junit or tap")
       .one_of({"text", "json", "junit", "tap"})
       .show_default();
-  command.add_option("--out", options.out, "Write to this file; - is stdout")
+  command.add_option("-o,--out", options.out, "Write to this file; - is stdout")
       .check(cli::given)
       .show_default();
   command

@@ -148,7 +148,10 @@ class ExitCodes(ProgramTest):
         self.assertEqual(done.returncode, CLEAN)
         for command in re.findall(r"(?m)^  ([a-z-]+)   ", done.stdout.decode()):
             # Each has a footer of its own.
-            self.assertNotIn(b"'rubric COMMAND --help'", run(command, "--help").stdout, command)
+            help_text = run(command, "--help").stdout.decode()
+            self.assertNotIn("'rubric COMMAND --help'", help_text, command)
+            # A file to write has the same name everywhere.
+            self.assertNotRegex(help_text, "(?m)^  (--out |.*--output)", command)
         self.assertIn("--filter", run("decode", "--help").stdout.decode())
         for words in (("--help",), ("decode", "--help"), ("check", "--help")):
             for line in run(*words).stdout.decode().splitlines():
