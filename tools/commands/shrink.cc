@@ -155,7 +155,6 @@ void add_shrink(cli::Command& app) {
   add_protocol_option(sub, options->protocol);
   sub.add_option("--reference", options->references,
                  "Require that this implementation passes the result; again for another one")
-      .check(cli::given)
       .one_at_a_time();
   sub.add_option("--case", options->case_name, "Shrink this case (default: the first that fails)");
   sub.add_option("--profile", options->profile,
