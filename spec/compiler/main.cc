@@ -141,17 +141,12 @@ int main(int argc, char** argv) {
   rubric::cli::Command program(
       "rubricc",
       "Check wire specs (a strict profile of Kaitai Struct) and generate code from them.");
-  const auto requirements = program
-                                .add_option("--requirements", options.requirements,
-                                            "Read the catalogue of requirements from this file")
-                                .show_default();
-  const auto profiles =
-      program
-          .add_option("--profiles", options.profiles, "Read the profiles (.yaml) from this folder")
-          .show_default();
-  const auto cases =
-      program.add_option("--cases", options.cases, "Read the golden traces (.rtr) from this folder")
-          .show_default();
+  const auto requirements = program.add_option("--requirements", options.requirements,
+                                               "Read the catalogue of requirements from this file");
+  const auto profiles = program.add_option("--profiles", options.profiles,
+                                           "Read the profiles (.yaml) from this folder");
+  const auto cases = program.add_option("--cases", options.cases,
+                                        "Read the golden traces (.rtr) from this folder");
   auto check = program.add_flag("--check", options.check, "Check, and write nothing");
   auto emit = program.add_option("--emit", options.emit, "Generate these, separated by commas")
                   .delimiter(',')

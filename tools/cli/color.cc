@@ -9,8 +9,7 @@ namespace rubric::cli {
 
 void add_color_option(Command& app, std::string& when) {
   app.add_option("--color", when, "Colour the text: auto (on a terminal), always or never")
-      .one_of({"auto", "always", "never"})
-      .show_default();
+      .one_of({"auto", "always", "never"});
 }
 
 bool use_color(const std::string& when, int fd) {

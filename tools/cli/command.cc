@@ -109,6 +109,17 @@ class Help final : public CLI::Formatter {
   }
 };
 
+/// Returns whether an option without a value on the command line has one all the same.
+template <class Target>
+bool has_default(const Target& target) {
+  if constexpr (requires { target.empty(); }) return !target.empty();
+  if constexpr (requires { target.has_value(); }) return target.has_value();
+  return true;
+}
+
+/// Refuses an empty text, such as that of a shell's unset variable.
+std::string given(const std::string& text) { return text.empty() ? "is empty" : ""; }
+
 template <class Number>
 CLI::Validator range(Number min, Number max) {
   return CLI::Range(min, max).description(fmt::format("{} to {}", min, max));
@@ -122,8 +133,6 @@ int code_of(const Ending& ending) {
   const auto* const exit = dynamic_cast<const Exit*>(&ending);
   return exit == nullptr ? -1 : exit->code;
 }
-
-std::string given(const std::string& text) { return text.empty() ? "is empty" : ""; }
 
 std::string whole_number(const std::string& text) {
   if (is_digits(text)) return {};
@@ -163,11 +172,6 @@ Option& Option::check(Check check, const std::string& type_name) {
 
 Option& Option::required() {
   option_->required();
-  return *this;
-}
-
-Option& Option::show_default() {
-  option_->capture_default_str();
   return *this;
 }
 
@@ -231,7 +235,11 @@ Command& Command::add_subcommand(const std::string& name, const std::string& des
 template <class Target>
 Option Command::add_option(const std::string& names, Target& target,
                            const std::string& description) {
-  return Option(*app_->add_option(names, target, description));
+  CLI::Option* const option = app_->add_option(names, target, description);
+  if (has_default(target) && description.find("(default: ") == description.npos) {
+    option->capture_default_str();
+  }
+  return Option(*option).check(given);
 }
 
 #define RUBRIC_OPTION_TARGET(...) \

@@ -45,8 +45,6 @@ class UsageError : public Ending {
 /// Returns what is wrong with an option's text, empty if nothing is.
 using Check = std::function<std::string(const std::string& text)>;
 
-/// Refuses an empty text, such as that of a shell's unset variable.
-std::string given(const std::string& text);
 /// Accepts a whole number of 1 or more.
 std::string at_least_one(const std::string& text);
 /// Accepts a whole number of 0 or more; the library alone takes -1 for the greatest number.
@@ -64,8 +62,6 @@ class Option {
   /// `type_name` replaces the type that the help shows, unless it is empty.
   Option& check(Check check, const std::string& type_name = {});
   Option& required();
-  /// Shows the target's present value in the help.
-  Option& show_default();
   /// Takes one value each time the option is given, so that positional arguments may follow.
   Option& one_at_a_time();
   /// Does the same as one_at_a_time(); the help shows a single value.
@@ -106,8 +102,10 @@ class Command {
   Command(const Command&) = delete;
 
   Command& add_subcommand(const std::string& name, const std::string& description);
-  /// Adds an option; `names` as in "-o,--output" or, for a positional argument, "FILE". Targets are
-  /// texts, whole and floating-point numbers, std::optional of these, and vectors of texts.
+  /// Adds an option; `names` as in "-o,--out" or, for a positional argument, "FILE". Targets are
+  /// texts, whole and floating-point numbers, std::optional of these, and vectors of texts. An
+  /// empty text is refused. The help shows the target's present value, unless it is empty or the
+  /// description says "(default: ...)".
   template <class Target>
   Option add_option(const std::string& names, Target& target, const std::string& description = {});
   Option add_flag(const std::string& names, bool& target, const std::string& description = {});

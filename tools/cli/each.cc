@@ -405,10 +405,9 @@ void add_each_options(Command& command, EachOptions& options) {
       .add_option("--jobs", options.jobs,
                   "With --each, take this many runs at a time (default: cores)")
       .between(std::uint64_t{1}, std::uint64_t{256});  // Each takes two descriptors.
-  command
-      .add_option("--resume", options.resume,
-                  "With --each, keep results in this file, and skip runs whose results are there")
-      .check(given);
+  command.add_option(
+      "--resume", options.resume,
+      "With --each, keep results in this file, and skip runs whose results are there");
   command.add_option("--shard", options.shard,
                      "With --each, take only part K of N, divided by the files' names: K/N");
 }

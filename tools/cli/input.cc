@@ -466,9 +466,8 @@ void add_input_options(Command& app, InputOptions& options) {
   options.spec = kAutoSpec;
   add_spec_option(app, options);
   app.add_option(
-         "--as", options.as_message,
-         "Read the input as this message alone: each line of hex text, or a binary file whole")
-      .check(given);
+      "--as", options.as_message,
+      "Read the input as this message alone: each line of hex text, or a binary file whole");
 }
 
 void add_spec_option(Command& app, InputOptions& options) {
@@ -480,8 +479,7 @@ void add_spec_option(Command& app, InputOptions& options) {
                  "messages), a .ksy file, or several, as a,b: where two have an AM type, the "
                  "first of them has it" +
                      by_content)
-      .joined_by(',')
-      .show_default();
+      .joined_by(',');
 }
 
 void add_live_options(Command& app, InputOptions& options) {

@@ -147,14 +147,12 @@ void add_capture_options(Command& app, InputOptions& options, bool bare) {
                              "lines)") +
                      (bare ? ", hex-radio (text, 802.15.4 frames) or bare (one message, with --as)"
                            : " or hex-radio (text, 802.15.4 frames)"))
-      .one_of(std::move(formats))
-      .show_default();
+      .one_of(std::move(formats));
   app.add_option("--fcs", options.fcs,
                  "Read the last two bytes of radio frames with link type 195, or of hex-radio, as "
                  "crc (their FCS), cc24xx (RSSI, link quality and CRC bit of TI's chips), none "
                  "(data) or auto (decided from the beginning of the file)")
-      .one_of({"auto", "crc", "cc24xx", "none"})
-      .show_default();
+      .one_of({"auto", "crc", "cc24xx", "none"});
   app.add_option("--link-type", options.links,
                  "Read a user-defined link type, 147 to 162, as serial, sf, radio, radio-fcs, "
                  "radio-phy, radio-tap or ethernet: 149=radio-fcs")

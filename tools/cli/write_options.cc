@@ -14,7 +14,7 @@
 namespace rubric::cli {
 void add_write_options(Command& command, WriteOptions& options, const std::string& description,
                        bool rotates, bool with_log) {
-  const Option write = command.add_option("--write", options.path, description).check(given);
+  const Option write = command.add_option("--write", options.path, description);
   Option force = command.add_flag(
       "--force", options.force,
       fmt::format("Let a --write {}that grows replace an old file", with_log ? "or --log " : ""));

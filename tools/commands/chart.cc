@@ -170,17 +170,12 @@ void add_chart(cli::Command& app) {
   auto options = std::make_shared<ChartOptions>();
   cli::Command& sub = app.add_subcommand("chart", "Draw a golden trace as a sequence chart");
   sub.footer(kChartFooter);
-  sub.add_option("CASE", options->what, "A case's name, FILE.rtr or FILE.rtr:CASE")
-      .required()
-      .check(cli::given);
+  sub.add_option("CASE", options->what, "A case's name, FILE.rtr or FILE.rtr:CASE").required();
   add_protocol_option(sub, options->folder);
-  sub.add_option("--format", options->format, "Draw as text or svg")
-      .one_of({"text", "svg"})
-      .show_default();
+  sub.add_option("--format", options->format, "Draw as text or svg").one_of({"text", "svg"});
   sub.add_option("--target", options->target,
-                 "Draw what this implementation does instead, as rubric test has it")
-      .check(cli::given);
-  sub.add_option("-o,--out", options->out, "Write to this file; - is stdout").show_default();
+                 "Draw what this implementation does instead, as rubric test has it");
+  sub.add_option("-o,--out", options->out, "Write to this file; - is stdout");
   sub.add_option("--width", options->width,
                  "Wrap text at this many columns (default: the terminal's, else 100)")
       .between(60, 1000);

@@ -216,24 +216,16 @@ void add_options(cli::Command& command, CheckOptions& options) {
   command
       .add_option("--profile", options.profile,
                   "Judge by the rules of the paper, or as release 1.0 has them")
-      .one_of({"paper", "deployed"})
-      .show_default();
+      .one_of({"paper", "deployed"});
   command
       .add_option("--format", options.format,
                   "Print text, json (rubric.check/1), jsonl (an event a line) or junit")
-      .one_of({"text", "json", "jsonl", "junit"})
-      .show_default();
-  command
-      .add_option("--expect", options.expect,
-                  "Read known failures with their reasons from this YAML file")
-      .check(cli::given);
-  command.add_option("--out", options.out, "Write to this file; - is stdout")
-      .check(cli::given)
-      .show_default();
-  command
-      .add_option("--report", options.report,
-                  "Write index.html, report.json and junit.xml into this folder")
-      .check(cli::given);
+      .one_of({"text", "json", "jsonl", "junit"});
+  command.add_option("--expect", options.expect,
+                     "Read known failures with their reasons from this YAML file");
+  command.add_option("-o,--out", options.out, "Write to this file; - is stdout");
+  command.add_option("--report", options.report,
+                     "Write index.html, report.json and junit.xml into this folder");
   command.add_option("--node", options.nodes,
                      "Name a node's role as ID=ROLE: 2=mote; mote, sink or base-station");
   command.add_option("--sink", options.sinks, "Name a sink's island as ID=ISLAND: 1=11");
@@ -241,13 +233,11 @@ void add_options(cli::Command& command, CheckOptions& options) {
   command
       .add_option("--sniffer", options.sniffer,
                   "Say that every frame on the air is in the capture: complete, else unknown")
-      .one_of({"complete", "unknown"})
-      .show_default();
+      .one_of({"complete", "unknown"});
   command
       .add_option("--start", options.start,
                   "Say that nothing had happened before the first frame: cold, else unknown")
-      .one_of({"cold", "unknown"})
-      .show_default();
+      .one_of({"cold", "unknown"});
   add_state_option(command, options.stated);
   command
       .add_option("--response", options.response_ms,
@@ -267,8 +257,7 @@ void add_options(cli::Command& command, CheckOptions& options) {
       .add_option("--align", options.align,
                   "Put captures whose clocks differ on one clock, by the frames that they share: "
                   "auto; off takes stamps as they are")
-      .one_of({"auto", "off"})
-      .show_default();
+      .one_of({"auto", "off"});
   command
       .add_option(
           "--keep", options.keep_minutes,
@@ -283,8 +272,7 @@ void add_options(cli::Command& command, CheckOptions& options) {
   command
       .add_option("--max-findings", options.findings_max,
                   "Print at most this many findings of a rule in full, and count the others")
-      .check(cli::whole_number)
-      .show_default();
+      .check(cli::whole_number);
   command
       .add_option("--width", options.width,
                   "Wrap text at this many columns (default: the terminal's, else 100)")

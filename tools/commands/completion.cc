@@ -175,7 +175,7 @@ bool is_spec(const cli::OptionInfo& flag) {
   return !flag.long_names.empty() && flag.long_names.front() == kSpec;
 }
 
-/// Returns '(-o --output)'{-o,--output}'[what it is]:value:(a b)'.
+/// Returns '(-o --out)'{-o,--out}'[what it is]:value:(a b)'.
 std::string zsh_argument(const cli::OptionInfo& flag) {
   const std::vector<std::string> names = dashed(flag);
   const std::string help = shell_quoted("[" + flag.description + "]");

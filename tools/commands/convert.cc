@@ -182,8 +182,7 @@ void add_convert(cli::Command& app) {
       "FILE", options->input.files,
       "Captures, and last the target unless -o names it; - is stdin or stdout. Names that "
       "end in .gz or .zst are written compressed");
-  sub.add_option("-o,--output", options->output, "Write to this file; - is stdout")
-      .check(cli::given);
+  sub.add_option("-o,--out", options->output, "Write to this file; - is stdout");
   sub.add_option("--format", options->format,
                  "Write hex, hdlc, sf, pcap or pcapng (default: by the target's suffix)")
       .one_of(encode::container_names());
@@ -191,8 +190,7 @@ void add_convert(cli::Command& app) {
   sub.add_option("--only", options->only, "Keep only packets of this framing: hdlc, sf or radio")
       .one_of({"hdlc", "sf", "radio"});
   sub.add_option("--filter", options->filter,
-                 "Keep only packets for which this holds, as in 'rubric decode'")
-      .check(cli::given);
+                 "Keep only packets for which this holds, as in 'rubric decode'");
   cli::add_spec_option(sub, options->input);
   sub.exit_code_of([options] {
     settle_target(*options);

@@ -322,13 +322,11 @@ void add_coverage(cli::Command& app) {
       "Exit codes: 0 covered, 1 a MUST without a case, a forbidding rule that no case attempts, "
       "or\n"
       "a case that is wrong, 64 usage, 66 the cases cannot be read, 74 output cannot be written.");
-  sub.add_option("--cases", options->cases,
-                 "Read golden traces from this folder, in place of the kit's own or the protocol's")
-      .check(cli::given);
+  sub.add_option(
+      "--cases", options->cases,
+      "Read golden traces from this folder, in place of the kit's own or the protocol's");
   add_protocol_option(sub, options->protocol);
-  sub.add_option("--format", options->format, "Print text or json")
-      .one_of({"text", "json"})
-      .show_default();
+  sub.add_option("--format", options->format, "Print text or json").one_of({"text", "json"});
   sub.exit_code_of([options] { return run_coverage(*options); });
 }
 

@@ -334,21 +334,16 @@ void add_decode(cli::Command& app) {
   cli::add_input_options(command, options->input);
   cli::add_live_options(command, options->input);
   command.add_option("--format", options->format, "Print text, jsonl (rubric.decode/1) or csv")
-      .one_of({"text", "jsonl", "csv"})
-      .show_default();
-  command
-      .add_option("--filter", options->filter,
-                  "Print only frames for which this holds: message==updates && src.devid==4")
-      .check(cli::given);
-  command.add_option("--fields", options->fields, "Print only these fields, as in a.b,c")
-      .check(cli::given);
+      .one_of({"text", "jsonl", "csv"});
+  command.add_option("--filter", options->filter,
+                     "Print only frames for which this holds: message==updates && src.devid==4");
+  command.add_option("--fields", options->fields, "Print only these fields, as in a.b,c");
   command
       .add_option("--time", options->time,
                   "Print times as epoch (seconds, as captured), utc or local (dates), relative "
                   "(since the first line), delta (since the line before) or none")
-      .one_of({"epoch", "utc", "local", "relative", "delta", "none"})
-      .show_default();
-  command.add_option("--count", options->count, "Stop after this many lines")
+      .one_of({"epoch", "utc", "local", "relative", "delta", "none"});
+  command.add_option("--count", options->count, "Stop after this many lines (default: at the end)")
       .check(cli::at_least_one);
   command.add_flag("--hex", options->hex, "Print a hex dump below each line of text");
   command.add_flag("--strict", options->strict, "End with 1 for noted frames, too");

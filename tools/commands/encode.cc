@@ -77,14 +77,11 @@ void add_encode(cli::Command& app) {
   encode::add_line_options(sub, options->lines);
   encode::add_carrier_option(sub, options->lines);
   sub.add_option("--format", options->format, "Write hex, hdlc, sf, pcap or pcapng")
-      .one_of(encode::container_names())
-      .show_default();
-  sub.add_option("-o,--output", options->output, "Write to this file; - is stdout")
-      .check(cli::given)
-      .show_default();
+      .one_of(encode::container_names());
+  sub.add_option("-o,--out", options->output, "Write to this file; - is stdout");
   sub.exit_code_of([options] {
     encode::check_line_options(options->lines);
-    cli::keep_apart("--output", options->output, cli::all_inputs(options->lines.input));
+    cli::keep_apart("--out", options->output, cli::all_inputs(options->lines.input));
     return run_encode(*options);
   });
 }

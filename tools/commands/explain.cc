@@ -232,13 +232,11 @@ void add_explain(cli::Command& app) {
   cli::add_spec_option(sub, options->input);
   add_protocol_option(sub, options->folder);
   sub.get_option("--protocol").excludes(sub.get_option("--spec"));
-  sub.add_option("--as", options->input.as_message, "Read the bytes as this message alone")
-      .check(cli::given);
+  sub.add_option("--as", options->input.as_message, "Read the bytes as this message alone");
   sub.add_option("--framing", options->framing,
                  "Read the bytes as auto, sf (from the dispatch byte), hdlc (from the kind byte) "
                  "or radio (802.15.4)")
-      .one_of({"auto", "sf", "hdlc", "radio"})
-      .show_default();
+      .one_of({"auto", "sf", "hdlc", "radio"});
   sub.add_flag("--cases", options->all_cases, "Print all golden traces that name a rule");
   sub.exit_code_of([options] { return run_explain(*options); });
 }

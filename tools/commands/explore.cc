@@ -373,22 +373,19 @@ void add_faults(cli::Command& sub, ExploreOptions& options) {
   sub.add_flag("--reboot", options.reboot, "Let each mote lose its memory once");
   sub.add_flag("--prompt", n.prompt, "Let no frame outlive a timer");
   sub.add_flag("--busy", n.busy, "Make the end of each transmission a step of its own");
-  sub.add_option("--dups", n.dups,
-                 "Let this many frames in all be heard again; 0: any number (scope full: 1)")
+  sub.add_option(
+         "--dups", n.dups,
+         "Let this many frames in all be heard again, 0: any number (default: 0; scope full: 1)")
       .between(0, 200);
   sub.add_option("--in-flight", n.in_flight, "Let this many copies of one frame be in flight")
-      .between(1, 4)
-      .show_default();
+      .between(1, 4);
 }
 
 void add_bounds(cli::Command& sub, ExploreOptions& options) {
   explore::Options& n = options.network;
-  sub.add_option("--calls", n.calls, "Let each mote call joinIsland this many times")
-      .between(1, 8)
-      .show_default();
+  sub.add_option("--calls", n.calls, "Let each mote call joinIsland this many times").between(1, 8);
   sub.add_option("--sends", n.sends, "Let each node send this many messages, in full scope")
-      .between(0, 4)
-      .show_default();
+      .between(0, 4);
   sub.add_option("--requests", options.requests,
                  "Let a call send this many join_requests (default: the profile's)")
       .between(1, 20);
@@ -396,8 +393,7 @@ void add_bounds(cli::Command& sub, ExploreOptions& options) {
                  "Let a join send this many ack_joins (default: the profile's)")
       .between(1, 20);
   sub.add_option("--max-states", n.states_max, "Stop, inconclusive, at this many states; 0: never")
-      .check(cli::whole_number)
-      .show_default();
+      .check(cli::whole_number);
   const auto size = [](const std::string& text) {
     const auto quantity = cli::parse_quantity(text);
     return quantity && quantity->bytes != 0 ? "" : "expected a size as in 2G, given " + text;
@@ -415,7 +411,7 @@ void add_bounds(cli::Command& sub, ExploreOptions& options) {
                "Then look for calls and reliable messages that never end though timers fire and "
                "frames that are sent again and again are heard");
   n.threads = std::max(1U, std::thread::hardware_concurrency());
-  sub.add_option("--threads", n.threads, "Run this many threads").between(1, 64).show_default();
+  sub.add_option("--threads", n.threads, "Run this many threads").between(1, 64);
 }
 
 }  // namespace
@@ -426,28 +422,25 @@ void add_explore(cli::Command& app) {
       app.add_subcommand("explore", "Try everything that can happen in a small network");
   sub.footer(explore_footer());
   sub.add_option("--motes", options->network.motes, "Explore this many motes")
-      .between(1, int{explore::kMotesMax})
-      .show_default();
+      .between(1, int{explore::kMotesMax});
   sub.add_option("--sinks", options->network.sinks,
                  "Explore this many sinks, all in range of all motes")
-      .between(1, int{explore::kSinksMax})
-      .show_default();
+      .between(1, int{explore::kSinksMax});
   add_faults(sub, *options);
   sub.add_option("--scope", options->scope,
                  "Explore joins alone: join; and messages of members: full")
-      .one_of({"join", "full"})
-      .show_default();
+      .one_of({"join", "full"});
   sub.add_option("--property", options->properties, "Check only these (default: all)");
   sub.add_option("--flaw", options->flaw,
                  "Give the machine this flaw of release 1.0; one that needs an old reply shows "
                  "with --calls 2, one that needs messages with --scope full");
-  sub.add_option("--profile", options->profile, "Keep to paper or deployed").show_default();
+  sub.add_option("--profile", options->profile, "Keep to paper or deployed");
   add_bounds(sub, *options);
   sub.add_option("--format", options->format,
                  "Print text or json; transitions also as dot (Graphviz)")
-      .one_of({"text", "json", "dot"})
-      .show_default();
-  sub.add_option("--out", options->out, "Write the shortest trace to this file (default: stdout)");
+      .one_of({"text", "json", "dot"});
+  sub.add_option("-o,--out", options->out,
+                 "Write the shortest trace to this file (default: stdout)");
   add_transition_options(sub, options->transitions);
   sub.add_option("--out-known", options->weakness_out,
                  "Write the shortest way to a known weakness to this file");

@@ -99,18 +99,15 @@ void add_client_options(cli::Command& command, ForwardOptions& options) {
   command
       .add_option("--clients", options.server.clients_max,
                   "Serve at most this many at once; refuse others")
-      .between(1, 10'000)
-      .show_default();
+      .between(1, 10'000);
   command
       .add_option("--buffer", options.buffer_kib, "Cut off a client that is this many KiB behind")
-      .between(64, 1 << 20)
-      .show_default();
+      .between(64, 1 << 20);
   command
       .add_option("--patience", options.patience_s,
                   "Cut off a client that takes more seconds than this for its handshake, or to end "
                   "a packet")
-      .between(1, 86'400)
-      .show_default();
+      .between(1, 86'400);
 }
 
 void add_source_options(cli::Command& command, ForwardOptions& options) {
@@ -121,13 +118,11 @@ void add_source_options(cli::Command& command, ForwardOptions& options) {
   command
       .add_option("--timeout", options.ack_wait_ms,
                   "On a serial line, send an unconfirmed packet again after this many ms")
-      .between(1, 3'600'000)
-      .show_default();
+      .between(1, 3'600'000);
   command
       .add_option("--retries", options.retries,
                   "On a serial line, send it again at most this many times")
-      .between(0, 10'000)
-      .show_default();
+      .between(0, 10'000);
 }
 
 }  // namespace
@@ -140,22 +135,16 @@ void add_forward(cli::Command& app) {
                      "serial@DEVICE:BAUD (or a platform, as serial@/dev/ttyUSB0:telosb), "
                      "network@HOST:PORT or sf@HOST:PORT; without it, $MOTECOM");
   command.add_option("--port", options->server.port, "Listen on this port; 0: a free one")
-      .between(0, 65'535)
-      .show_default();
-  command
-      .add_option("--bind", options->server.bind,
-                  "Listen at this address; 0.0.0.0 or :: lets other hosts in")
-      .check(cli::given)
-      .show_default();
+      .between(0, 65'535);
+  command.add_option("--bind", options->server.bind,
+                     "Listen at this address; 0.0.0.0 or :: lets other hosts in");
   add_client_options(command, *options);
   add_source_options(command, *options);
   cli::add_write_options(command, options->write,
                          "Keep packets of both directions in this pcapng file, not a pipe", true);
-  command
-      .add_option("--filter", options->filter,
-                  "Give clients only packets for which this holds, as in 'rubric decode'; "
-                  "--write keeps all")
-      .check(cli::given);
+  command.add_option("--filter", options->filter,
+                     "Give clients only packets for which this holds, as in 'rubric decode'; "
+                     "--write keeps all");
   cli::add_spec_option(command, options->input);
   command.add_flag("--verbose", options->server.verbose, "Say which clients come and leave");
   command.footer(

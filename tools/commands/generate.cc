@@ -322,7 +322,7 @@ std::string share(const std::string& text) {
 
 void check_outputs(const GenerateOptions& options) {
   for (const std::string& file : cli::files_in(options.input.spec)) {
-    cli::keep_apart("--output", options.output, {file});
+    cli::keep_apart("--out", options.output, {file});
     cli::keep_apart("--expect", options.expect, {file});
   }
   if (options.expect.empty()) return;
@@ -339,26 +339,18 @@ void add_generate(cli::Command& app) {
   cli::Command& sub = app.add_subcommand(
       "generate", "Generate valid and near-valid frames, and what a decoder must say of each");
   sub.footer(kGenerateFooter);
-  sub.add_option("--count", options->count, "Make this many frames")
-      .check(cli::at_least_one)
-      .show_default();
+  sub.add_option("--count", options->count, "Make this many frames").check(cli::at_least_one);
   sub.add_option("--seed", options->seed, "Seed all that is left to chance")
-      .check(cli::whole_number)
-      .show_default();
+      .check(cli::whole_number);
   sub.add_option("--valid", options->valid, "Make this share of the frames valid")
-      .check(share, "SHARE")
-      .show_default();
+      .check(share, "SHARE");
   sub.add_option("--format", options->format, "Write hdlc, sf, pcapng, hex or jsonl")
-      .one_of(container_names())
-      .show_default();
+      .one_of(container_names());
   cli::add_spec_option(sub, options->input);
-  sub.add_option("--message", options->messages, "Make only these messages").check(cli::given);
-  sub.add_option("-o,--output", options->output, "Write to this file; - is stdout")
-      .check(cli::given)
-      .show_default();
+  sub.add_option("--message", options->messages, "Make only these messages");
+  sub.add_option("-o,--out", options->output, "Write to this file; - is stdout");
   sub.add_option("--expect", options->expect,
-                 "Write the expectations to this file, a JSON line a frame")
-      .check(cli::given);
+                 "Write the expectations to this file, a JSON line a frame");
   sub.add_flag("--fields", options->fields, "Add each number of a valid frame to its expectation");
   sub.exit_code_of([options] {
     check_outputs(*options);

@@ -261,14 +261,12 @@ void add_install_wireshark(cli::Command& app) {
       app.add_subcommand("install-wireshark", "Teach Wireshark to dissect and to capture frames");
   sub.footer(kInstallWiresharkFooter);
   sub.add_option("--dir", options->folder,
-                 "Install into plugins and extcap of this folder, not the personal ones")
-      .check(cli::given);
+                 "Install into plugins and extcap of this folder, not the personal ones");
   sub.add_option(
-         "--spec", options->spec,
-         "Dissect this protocol that ships, as printf, or that of a .ksy file, too: the one "
-         "that frames are read by, unless Wireshark's preference RUBRIC, Protocol, says "
-         "otherwise")
-      .check(cli::given);
+      "--spec", options->spec,
+      "Dissect this protocol that ships, as printf, or that of a .ksy file, too: the one "
+      "that frames are read by, unless Wireshark's preference RUBRIC, Protocol, says "
+      "otherwise");
   sub.add_flag("--dry-run", options->dry_run, "Say what would be done, and do nothing");
   sub.add_flag("--remove", options->remove, "Remove all of it again");
   sub.add_flag("--force", options->force, "Replace or remove files that are not ours, too");

@@ -115,9 +115,7 @@ void add_messages(cli::Command& app) {
   sub.footer(
       "Exit codes: 0 listed, 64 usage, 66 a .ksy file is wrong, 74 output cannot be written.");
   cli::add_spec_option(sub, options->input);
-  sub.add_option("--format", options->format, "Print text or json")
-      .one_of({"text", "json"})
-      .show_default();
+  sub.add_option("--format", options->format, "Print text or json").one_of({"text", "json"});
   sub.callback([options] {
     const Protocol& protocol = cli::chosen_protocol(options->input);
     cli::Output output;

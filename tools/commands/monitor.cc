@@ -299,17 +299,14 @@ void add_monitor(cli::Command& app) {
       .check(is_source)
       .required();
   sub.add_option("--profile", options->profile, "Judge by the rules of paper or deployed")
-      .one_of({"paper", "deployed"})
-      .show_default();
+      .one_of({"paper", "deployed"});
   sub.add_option("--silent-after", options->silent_after_s,
                  "Report a node of a line as silent after this many seconds without a message; 0: "
                  "never")
-      .between(0, 86'400)
-      .show_default();
+      .between(0, 86'400);
   sub.add_option("--credentials", options->credentials,
                  "Read user=, password=, ca=, cert= and key= for the broker from this file; else "
-                 "RUBRIC_MQTT_USER and RUBRIC_MQTT_PASSWORD are taken")
-      .check(cli::given);
+                 "RUBRIC_MQTT_USER and RUBRIC_MQTT_PASSWORD are taken");
   sub.add_flag("--reconnect", options->reconnect, "Open a line again when it comes back");
   sub.exit_code_of([options] { return run_monitor(*options); });
 }

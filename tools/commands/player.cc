@@ -22,13 +22,10 @@
 namespace rubric::tools {
 
 void add_player_options(cli::Command& app, PlayerOptions& options) {
-  app.add_option("--out", options.out, "Write the trace to this file; - is stdout")
-      .check(cli::given)
-      .show_default();
+  app.add_option("-o,--out", options.out, "Write the trace to this file; - is stdout");
   app.add_option("--timeout", options.timeout_seconds,
                  "Wait at most this many seconds for an answer")
-      .between(0.01, 3600.0)
-      .show_default();
+      .between(0.01, 3600.0);
   add_state_option(app, options.stated);
   app.add_option("--seed", options.seed, "Seed what is random in nodes, where a trace has no seed")
       .check(cli::whole_number)

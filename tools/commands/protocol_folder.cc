@@ -16,11 +16,9 @@ namespace rubric::tools {
 namespace fs = std::filesystem;
 
 void add_protocol_option(cli::Command& command, std::string& folder) {
-  command
-      .add_option("--protocol", folder,
-                  "Work with the protocol of this folder in place of RUBICON: its app.yaml, "
-                  "requirements.yaml and cases")
-      .check(cli::given);
+  command.add_option("--protocol", folder,
+                     "Work with the protocol of this folder in place of RUBICON: its app.yaml, "
+                     "requirements.yaml and cases");
 }
 
 void use_protocol(const std::string& folder, const std::vector<std::string>& profiles,

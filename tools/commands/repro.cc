@@ -120,11 +120,10 @@ void add_repro(cli::Command& app) {
       .required()
       .one_of({"machine", "nodes", "network"});
   sub.add_option("FILE", options->input, "The input; - is stdin").required();
-  sub.add_option("--target", options->target, "Run machine, or machine:FLAW").show_default();
+  sub.add_option("--target", options->target, "Run machine, or machine:FLAW");
   sub.add_flag("--exact", options->exact,
                "Expect the machine's own numbers and bytes, not only what the rules ask for");
-  sub.add_option("-o,--out", options->out, "Write the trace to this file; - is stdout")
-      .show_default();
+  sub.add_option("-o,--out", options->out, "Write the trace to this file; - is stdout");
   sub.callback([options] { run_repro(*options); });
 }
 

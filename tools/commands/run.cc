@@ -391,16 +391,14 @@ void add_run(cli::Command& app) {
   sub.add_option("--island", options->island, "Give a sink or base station this island")
       .between(1, 65532);
   sub.add_option("--radio", options->radio, "Use this virtual air; port 0 is a free one")
-      .check(is_radio, "zep:PORT")
-      .show_default();
+      .check(is_radio, "zep:PORT");
   sub.add_option(
          "--serial", options->serial,
          "Serve a sink's serial line to one program at a time: as a serial forwarder at this "
          "port of the host, 0 a free one, or as a pseudo-terminal, which stderr names")
       .check(is_serial, "sf-server:PORT|pty");
   sub.add_option("--sink", options->sink, "Reach a base station's sink by this line")
-      .check(is_line)
-      .show_default();
+      .check(is_line);
   sub.add_option(
          "--app", options->app,
          "Read calls as JSON lines from stdin, with which a mote joins: -; or send a mote's "
@@ -409,19 +407,14 @@ void add_run(cli::Command& app) {
   sub.add_option("--target", options->target,
                  "Run another implementation as the mote, in virtual time turned by the clock: a "
                  "command that speaks rct/1, such as firmware in a simulator, machine or "
-                 "machine:FLAW, as for 'rubric test'")
-      .check(cli::given);
+                 "machine:FLAW, as for 'rubric test'");
   sub.add_option("--type", options->type,
-                 "Give a mote that joins by itself this type, by name or number")
-      .show_default();
+                 "Give a mote that joins by itself this type, by name or number");
   sub.add_option("--transducers", options->transducers,
-                 "Give it these transducers, separated by commas, or the number of their bits")
-      .show_default();
-  sub.add_option("--actuators", options->actuators, "Give it these actuators, in the same form")
-      .show_default();
+                 "Give it these transducers, separated by commas, or the number of their bits");
+  sub.add_option("--actuators", options->actuators, "Give it these actuators, in the same form");
   sub.add_option("--loss", options->loss_percent, "Lose this many percent of the incoming frames")
-      .between(0, 100)
-      .show_default();
+      .between(0, 100);
   sub.add_option("--seed", options->seed, "Seed waits, losses and the first number");
   cli::add_write_options(sub, options->write, "Keep all frames in this pcapng file", true, true);
   sub.add_option(
@@ -433,26 +426,23 @@ void add_run(cli::Command& app) {
                "Announce the sensors of motes to Home Assistant, below homeassistant/sensor");
   sub.add_option("--credentials", options->credentials,
                  "Read user=, password=, ca=, cert= and key= for the broker from this file; else "
-                 "RUBRIC_MQTT_USER and RUBRIC_MQTT_PASSWORD are taken")
-      .check(cli::given);
+                 "RUBRIC_MQTT_USER and RUBRIC_MQTT_PASSWORD are taken");
   sub.add_option(
          "--gone-after", options->gone_after_s,
          "Report mote_left after a mote was silent for this many seconds; a sink then lets it join "
          "anew, and in the space it is offline. A base station asks it before, by a reliable "
          "message without data, as it does not hear what goes to the sink; 0: never")
-      .between(0, 86'400)
-      .show_default();
+      .between(0, 86'400);
   sub.add_option(
          "--listen", options->listen,
          "Let programs of this host subscribe at this port of a proxy by JSON lines; 0: a free "
          "one, which stderr names")
-      .between(0, 65'535)
-      .show_default();
+      .between(0, 65'535);
   sub.add_option("--network", options->network,
                  "Attach a second network to a proxy, such as KNX, by lines of words at this port")
       .check(is_network, "lines:HOST:PORT");
-  sub.add_option("--log", options->log, "Write what the nodes were given and did to this .rtr file")
-      .check(cli::given);
+  sub.add_option("--log", options->log,
+                 "Write what the nodes were given and did to this .rtr file");
   options->is_given = [&sub](const char* name) { return sub.get_option(name).is_given(); };
   sub.exit_code_of([options] { return run_node(*options); });
 }

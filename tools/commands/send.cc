@@ -274,15 +274,12 @@ class Send {
 void add_timing_options(cli::Command& app, SendOptions& options) {
   app.add_option("--timeout", options.timeout_ms,
                  "On a serial line, send an unconfirmed packet again after this many ms")
-      .between(1, kWaitMostMs)
-      .show_default();
+      .between(1, kWaitMostMs);
   app.add_option("--retries", options.retries,
                  "On a serial line, send it again at most this many times")
-      .between(0, kRetriesMost)
-      .show_default();
+      .between(0, kRetriesMost);
   app.add_option("--interval", options.interval_ms, "Wait this many ms between packets")
-      .between(0, kWaitMostMs)
-      .show_default();
+      .between(0, kWaitMostMs);
   app.add_flag("--keep-going", options.keep_going, "Go on after a packet that is not confirmed");
   app.add_option("--listen", options.listen_s,
                  "Print what comes back, as rubric decode does, until this many seconds after the "
@@ -307,14 +304,12 @@ void add_send(cli::Command& app) {
   });
   sub.add_option("--to", options->to,
                  "Send to serial@DEVICE:BAUD (or a platform, as serial@/dev/ttyUSB0:telosb), "
-                 "network@HOST:PORT or sf@HOST:PORT (default: $MOTECOM, else sf@localhost:9002)")
-      .check(cli::given);
+                 "network@HOST:PORT or sf@HOST:PORT (default: $MOTECOM, else sf@localhost:9002)");
   add_timing_options(sub, *options);
   sub.add_option("--format", options->format,
                  "With --listen, print what comes back as text or jsonl (rubric.decode/1; what "
                  "became of the packets then goes to stderr)")
-      .one_of({"text", "jsonl"})
-      .show_default();
+      .one_of({"text", "jsonl"});
   cli::add_color_option(sub, options->color);
   sub.exit_code_of([options] {
     encode::check_line_options(options->lines);

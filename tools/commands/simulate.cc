@@ -103,29 +103,22 @@ void add_simulate(cli::Command& app) {
   sub.footer(simulate_footer());
   const cli::Option motes =
       sub.add_option("--motes", options->network.motes, "Run this many motes, in scenario free")
-          .between(std::size_t{0}, kMotesMax)
-          .show_default();
+          .between(std::size_t{0}, kMotesMax);
   const cli::Option sinks =
       sub.add_option("--sinks", options->network.sinks, "Run this many sinks, in scenario free")
-          .between(std::size_t{0}, kSinksMax)
-          .show_default();
+          .between(std::size_t{0}, kSinksMax);
   sub.add_option("--seed", options->network.seed, "Seed all that is left to chance")
-      .check(cli::whole_number)
-      .show_default();
+      .check(cli::whole_number);
   sub.add_option("--loss", options->network.loss,
                  "Let a receiver miss a radio frame with this probability")
-      .between(0.0, 1.0)
-      .show_default();
+      .between(0.0, 1.0);
   sub.add_option("--dup", options->network.duplication,
                  "Let a receiver get a radio frame twice with this probability: the sender's link "
                  "repeats it on the air")
-      .between(0.0, 1.0)
-      .show_default();
+      .between(0.0, 1.0);
   sub.add_option("--seconds", options->seconds, "Run for this long (default: as the scenario says)")
       .between(0.001, kSecondsMax);
-  sub.add_option("--scenario", options->scenario, "Run this network")
-      .one_of(scenario_names())
-      .show_default();
+  sub.add_option("--scenario", options->scenario, "Run this network").one_of(scenario_names());
   sub.add_option("--out-rtr", options->rtr, "Write a log of every node; - is stdout");
   sub.add_option("--out-pcapng", options->pcapng,
                  "Write a capture of the radio and of the serial lines; - is stdout");

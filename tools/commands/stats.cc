@@ -58,9 +58,7 @@ void add_stats(cli::Command& app) {
   sub.footer(kStatsFooter);
   cli::add_input_options(sub, options->input);
   cli::add_live_options(sub, options->input);
-  sub.add_option("--format", options->format, "Print text or json")
-      .one_of({"text", "json"})
-      .show_default();
+  sub.add_option("--format", options->format, "Print text or json").one_of({"text", "json"});
   sub.exit_code_of([options] { return run_stats(*options); });
 }
 

@@ -355,35 +355,26 @@ void add_selection(cli::Command& command, TestOptions& options) {
   command.add_option(
       "TRACES", options.traces,
       "Golden traces, .rtr files or folders of them (default: those that were built in)");
-  command
-      .add_option("--cases", options.selection.globs,
-                  "Run only cases with such names: 'j4.*'; repeat for others")
-      .check(cli::given);
-  command
-      .add_option("--except", options.selection.excepted,
-                  "Leave out the cases with such names; repeat for others")
-      .check(cli::given);
-  command
-      .add_option("--rule", options.selection.requirements,
-                  "Run only cases that try this rule or family: J4-SEQ, J4, J; repeat for others")
-      .check(cli::given);
+  command.add_option("--cases", options.selection.globs,
+                     "Run only cases with such names: 'j4.*'; repeat for others");
+  command.add_option("--except", options.selection.excepted,
+                     "Leave out the cases with such names; repeat for others");
+  command.add_option(
+      "--rule", options.selection.requirements,
+      "Run only cases that try this rule or family: J4-SEQ, J4, J; repeat for others");
   command.add_option("--role", options.role, "Run only cases with a node of this role under test")
-      .check(cli::given, "TEXT:{mote,sink,base_station}");
-  command.add_option("--shard", options.shard, "Run only the Ith of N parts of the cases: I/N")
-      .check(cli::given);
+      .type_name("TEXT:{mote,sink,base_station}");
+  command.add_option("--shard", options.shard, "Run only the Ith of N parts of the cases: I/N");
   command.add_flag("--list", options.list,
                    "Print names, roles and rules of the cases, as text or JSON");
 }
 
 void add_options(cli::Command& command, TestOptions& options) {
-  command
-      .add_option("--target", options.targets,
-                  "Test this implementation: a command, or machine; repeat for others")
-      .check(cli::given);
-  command
-      .add_option("--app", options.app,
-                  "Run this command as the application, and perhaps PEIS, of a node at its line")
-      .check(cli::given);
+  command.add_option("--target", options.targets,
+                     "Test this implementation: a command, or machine; repeat for others");
+  command.add_option(
+      "--app", options.app,
+      "Run this command as the application, and perhaps PEIS, of a node at its line");
   add_selection(command, options);
   add_protocol_option(command, options.protocol);
   command
@@ -398,42 +389,29 @@ void add_options(cli::Command& command, TestOptions& options) {
   command
       .add_option("--repeat", options.repeats,
                   "Run each case this many times, each time with the next seed")
-      .between(1, 10000)
-      .show_default();
+      .between(1, 10000);
   command
       .add_option("--jobs", options.jobs,
                   "Run this many cases at once, each in a process; 0: one a core")
-      .between(0, 256)
-      .show_default();
+      .between(0, 256);
   command.add_option("--timeout", options.timeout_s, "Wait at most this many seconds for a step")
-      .between(0.01, 3600.0)
-      .show_default();
-  command
-      .add_option("--expect", options.expect,
-                  "Read known failures with their reasons from this YAML file")
-      .check(cli::given);
-  command
-      .add_option("--write-expect", options.write_expect,
-                  "Write what failed or was not decided as such a file, with reasons to fill in")
-      .check(cli::given);
+      .between(0.01, 3600.0);
+  command.add_option("--expect", options.expect,
+                     "Read known failures with their reasons from this YAML file");
+  command.add_option(
+      "--write-expect", options.write_expect,
+      "Write what failed or was not decided as such a file, with reasons to fill in");
   command
       .add_option("--require-rules", options.rules_required,
                   "Require this many rules to be decided, else the run is incomplete")
       .check(cli::whole_number);
   command.add_option("--format", options.format, "Print text, json (rubric.test/1), junit or tap")
-      .one_of({"text", "json", "junit", "tap"})
-      .show_default();
-  command.add_option("--out", options.out, "Write to this file; - is stdout")
-      .check(cli::given)
-      .show_default();
-  command
-      .add_option("--report", options.report,
-                  "Write index.html and all other reports into this folder")
-      .check(cli::given);
-  command
-      .add_option("--compare", options.compare,
-                  "Say which verdicts have changed since this report.json")
-      .check(cli::given);
+      .one_of({"text", "json", "junit", "tap"});
+  command.add_option("-o,--out", options.out, "Write to this file; - is stdout");
+  command.add_option("--report", options.report,
+                     "Write index.html and all other reports into this folder");
+  command.add_option("--compare", options.compare,
+                     "Say which verdicts have changed since this report.json");
   command.add_flag("--quiet", options.quiet, "Print no lines for cases that are as expected");
   command.add_flag("--verbose", options.verbose, "Print every failure in full");
   command

@@ -185,8 +185,7 @@ void add_line_options(cli::Command& app, LineOptions& options) {
   app.add_option("FILE", options.input.files, "JSON lines; none or - is stdin");
   cli::add_spec_option(app, options.input);
   app.add_option("--as", options.input.as_message,
-                 "Read each line as the fields of this message, and put it into a frame")
-      .check(cli::given);
+                 "Read each line as the fields of this message, and put it into a frame");
   app.add_option("--am-type", options.am_type, "With --as, set the AM type (default: its own)")
       .between(0, 0xff);
   app.add_option("--dest", options.dest, "With --as, set the AM destination (default: broadcast)")

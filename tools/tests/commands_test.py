@@ -290,7 +290,7 @@ class Convert(Folder):
             done = subprocess.run([RUBRIC, "convert", "-o", copy], stdin=stdin, capture_output=True)
         self.assertEqual(done.returncode, 64)
         self.assertEqual(copy.read_bytes(), SERIAL.read_bytes())
-        self.refused(("convert", SERIAL, "-o", "", "--format", "sf"), "--output: is empty")
+        self.refused(("convert", SERIAL, "-o", "", "--format", "sf"), "--out: is empty")
 
     def test_an_unreadable_input_leaves_the_target_alone(self):
         old, new = self.folder / "old.sf", self.folder / "new.sf"

@@ -39,7 +39,7 @@ SESSIONS = (
     ("chart", "j4.accept", "--out", "@"),
     ("diff", "--target", "machine", "--target", "machine:answers_members", "--cases", "j2.*",
      "--out", "@"),
-    ("encode", "@lines", "--format", "pcapng", "--output", "@"),
+    ("encode", "@lines", "--format", "pcapng", "--out", "@"),
     ("explore", "--motes", "1", "--calls", "1", "--loss", "--flaw", "no_fail", "--out", "@"),
     ("decode", "@other", "--write", "@"),
 )

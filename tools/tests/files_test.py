@@ -206,7 +206,7 @@ class Files(Folder):
                             (known, ("check", "--each", CAPTURE, "--resume", known, "--out",
                                      known)),
                             (spec, ("decode", CAPTURE, "--spec", spec, "--write", spec)),
-                            (spec, ("encode", "--spec", spec, "--output", spec)),
+                            (spec, ("encode", "--spec", spec, "--out", spec)),
                             (spec, ("generate", "--spec", spec, "-o", spec, "--count", "3"))):
             before = read.read_bytes()
             self.assertIn(b"is also an input", run(*words).stderr, words)

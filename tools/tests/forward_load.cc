@@ -350,17 +350,13 @@ int main(int argc, char** argv) {
                                "and measures.");
   rubric::forward::LoadOptions options;
   program.add_option("RUBRIC", options.program, "The program").required();
-  program.add_option("--clients", options.clients).show_default();
-  program.add_option("--stalled", options.stalled, "More clients, which read nothing")
-      .show_default();
-  program.add_option("--rate", options.rate, "Packets a second").show_default();
-  program.add_option("--seconds", options.seconds).show_default();
-  program.add_option("--bytes", options.packet_bytes, "Bytes of a packet")
-      .between(24, 252)
-      .show_default();
-  program
-      .add_option("--growth", options.growth_kib_max, "KiB by which its memory may grow when warm")
-      .show_default();
+  program.add_option("--clients", options.clients);
+  program.add_option("--stalled", options.stalled, "More clients, which read nothing");
+  program.add_option("--rate", options.rate, "Packets a second");
+  program.add_option("--seconds", options.seconds);
+  program.add_option("--bytes", options.packet_bytes, "Bytes of a packet").between(24, 252);
+  program.add_option("--growth", options.growth_kib_max,
+                     "KiB by which its memory may grow when warm");
   program.exit_code_of([&] {
     try {
       return rubric::forward::run(options);

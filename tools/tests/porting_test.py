@@ -37,7 +37,7 @@ def rubric(*words, folder=ROOT):
     return run(*words, cwd=folder, text=True, env={"GITHUB_ACTIONS": ""})
 
 
-LINES_MAX = readme_number("traces: # lines around it")
+LINES_MAX = readme_number("adapter of # lines around it")
 
 
 def loop():

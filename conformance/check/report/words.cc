@@ -17,14 +17,11 @@ std::string_view severity_name(check::Severity severity) {
 }
 
 std::string_view verdict_name(check::Verdict verdict) {
-  switch (verdict) {
-    case check::Verdict::kPass: return "pass";
-    case check::Verdict::kWeak: return "weak";
-    case check::Verdict::kStray: return "stray";
-    case check::Verdict::kInconclusive: return "inconclusive";
-    case check::Verdict::kFail: return "fail";
-  }
-  return "error";
+  // A verdict is the severity of the gravest finding, where a note is none.
+  static_assert(static_cast<int>(check::Verdict::kFail) ==
+                static_cast<int>(check::Severity::kFail));
+  return verdict == check::Verdict::kPass ? "pass"
+                                          : severity_name(static_cast<check::Severity>(verdict));
 }
 
 std::string place_text(const check::Run& run, const check::Place& place) {

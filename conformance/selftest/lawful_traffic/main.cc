@@ -1,4 +1,4 @@
-// rubric_lawful: writes captures of legal networks.
+// rubric_lawful: writes captures of lawful networks.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -95,17 +95,13 @@ int run(const LawfulOptions& options) {
 int main(int argc, char** argv) {
   rubric::cli::Command program(
       "rubric_lawful",
-      "Write captures of legal RUBICON networks, to test checkers for false alarms.");
+      "Write captures of lawful RUBICON networks, to test checkers for false alarms.");
   LawfulOptions options;
-  program.add_option("--variant", options.variant, "Write this variant, all (each once) or mixed")
-      .show_default();
-  program.add_option("--recorder", options.recorder, "Record the traffic in this way")
-      .show_default();
-  program.add_option("--seed", options.seed, "Begin with this seed").show_default();
-  program
-      .add_option("--count", options.count,
-                  "Write this many networks of each variant, with seeds that count up")
-      .show_default();
+  program.add_option("--variant", options.variant, "Write this variant, all (each once) or mixed");
+  program.add_option("--recorder", options.recorder, "Record the traffic in this way");
+  program.add_option("--seed", options.seed, "Begin with this seed");
+  program.add_option("--count", options.count,
+                     "Write this many networks of each variant, with seeds that count up");
   program.add_option("--out", options.folder,
                      "Write NAME-SEED.pcapng, .json and .app.jsonl into this folder");
   program.add_flag(

@@ -82,7 +82,7 @@ void add_new_adapter(cli::Command& app) {
   sub.add_option("LANGUAGE", options->language, "python, cpp or java")
       .required()
       .one_of({"python", "cpp", "java"});
-  sub.add_option("--out", options->out, "Write its files into this folder").show_default();
+  sub.add_option("-o,--out", options->out, "Write its files into this folder");
   sub.callback([options] { write_skeleton(*options); });
 }
 

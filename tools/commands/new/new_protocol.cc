@@ -71,7 +71,7 @@ void add_new_protocol(cli::Command& app) {
   sub.add_option("NAME", options->name, "The protocol's name, as my_protocol")
       .required()
       .check(lower_snake_case);
-  sub.add_option("--out", options->out, "Write into this folder (default: NAME)");
+  sub.add_option("-o,--out", options->out, "Write into this folder (default: NAME)");
   sub.callback([options] { write_protocol(*options); });
 }
 
