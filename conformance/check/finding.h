@@ -42,6 +42,7 @@ struct Finding {
   std::vector<Hypothesis> hypotheses;  ///< Furthest first; that one is blamed.
   std::uint32_t count = 1;             ///< Repeats within an episode.
   Place last;                          ///< Place of the last repeat.
+  bool beyond = false;                 ///< No profile accepts this of its rule.
 };
 
 enum class Verdict : std::uint8_t { kPass, kWeak, kStray, kInconclusive, kFail };

@@ -27,6 +27,8 @@ Terms terms_of(const Options& options, const trace::Statement& own) {
       machine::us_of(timeout != 0 ? timeout : machine::Profile{}.ack_timeout_ticks));
   out.ack_timeout_stated = options.ack_timeout_us.has_value() ||
                            find(stated, trace::ParameterId::kAckTimeout) != nullptr;
+  const std::int64_t* const buffers = find(stated, trace::ParameterId::kBuffers);
+  if (buffers != nullptr) out.buffers = static_cast<std::size_t>(*buffers);
   return out;
 }
 

@@ -1,6 +1,7 @@
 // What a node is held to.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "conformance/check/observation.h"
@@ -19,6 +20,9 @@ struct Terms {
   std::int64_t response_us = 0;     ///< This and the next the user may say in ms.
   std::int64_t ack_timeout_us = 0;  ///< Where the profile has none, the paper's.
   bool ack_timeout_stated = false;
+  /// Messages that wait for one line at most (decision 122); unstated, what its buffers hold at
+  /// least.
+  std::size_t buffers = SIZE_MAX;
 };
 
 const machine::NamedProfile& profile_of(bool deployed);

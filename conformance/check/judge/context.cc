@@ -397,7 +397,7 @@ bool Context::crowded(std::uint16_t node, std::int64_t time_us) const {
   if (its.whole) {
     const bool mote = its.role == machine::Role::kMote;
     const std::size_t room = mote ? machine::kRadioRoom : machine::kSerialRoom;
-    return backlog(node, time_us) >= static_cast<int>(room);
+    return backlog(node, time_us) >= static_cast<int>(std::min(room, terms(node).buffers));
   }
   // A message that came at most the response time before may still be in a buffer.
   const auto from =
@@ -475,6 +475,7 @@ void Context::report(ReqId requirement, Severity severity, const Place& at, std:
   finding.text = std::move(said.text);
   finding.expected = std::move(said.expected);
   finding.hypotheses = std::move(said.hypotheses);
+  finding.beyond = said.beyond;
   if (node != kNobody) {
     const Device& d = device(node);
     if (!d.judged) return;

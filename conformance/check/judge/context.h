@@ -25,6 +25,8 @@ struct Said {
   std::string text;
   std::string expected;
   std::vector<Hypothesis> hypotheses;
+  /// A profile accepts some difference of the rule, but not this.
+  bool beyond = false;
 };
 
 /// Returns by how much a clock of 32 bits has grown between two readings: of the growths that wrap

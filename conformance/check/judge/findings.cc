@@ -29,7 +29,7 @@ bool Findings::settled(std::int64_t before_us, std::int64_t now_us) const {
 }
 
 void Findings::add(Finding finding) {
-  if (finding.severity > Severity::kNote && accepted(finding.requirement)) {
+  if (finding.severity > Severity::kNote && !finding.beyond && accepted(finding.requirement)) {
     finding.severity = Severity::kNote;
   }
   std::erase_if(open_, [&](std::size_t i) {

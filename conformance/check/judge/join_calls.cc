@@ -287,6 +287,7 @@ void JoinCalls::told(std::uint16_t mote, const Observation& seen, const machine:
   const std::uint8_t expiries = motes_.expiries_min(mote);
   said.expected = "Not before expiry " + number(expiries) + " of the timer, " +
                   ms_text(expiries * context_.join_period_us(mote)) + ".";
+  said.beyond = true;
   context_.report("J8-FAIL"_rule, before_log ? Severity::kInconclusive : Severity::kFail,
                   seen.place, mote, std::move(said));
 }

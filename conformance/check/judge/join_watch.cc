@@ -147,8 +147,10 @@ void JoinWatch::surely_offered(std::uint16_t mote, std::uint32_t index, const Re
 bool JoinWatch::still_owed(std::uint16_t node, const Debt& debt) {
   const Observation& cause = context_.run.seen[debt.index];
   const std::int64_t from = cause.place.time_us;
-  const std::uint8_t requests_min = context_.device(node).whole
-                                        ? context_.profile(node).join_requests_max
+  // Where no event ends a call, it may be over after as few as end in FAIL elsewhere.
+  const machine::Profile& profile = context_.profile(node);
+  const std::uint8_t requests_min = context_.device(node).whole && profile.join_fail_signalled
+                                        ? profile.join_requests_max
                                         : motes_.expiries_min(node);
   if (debt.owes != Owes::kReply) {
     const auto owes = [&](const MoteHypothesis& h) {

@@ -12,7 +12,7 @@ using Phase = JoinMote::Phase;
 
 namespace {
 
-constexpr std::uint8_t kFewAcks = 5;
+constexpr std::uint8_t kFewAcks = 6;  // The first and five repeats (decision 102).
 constexpr std::int64_t kRecentUs = 1'000'000;
 
 AckJoin expected_ack(const MoteHypothesis& h) {
@@ -351,10 +351,13 @@ void MoteJoins::ack_join(std::uint16_t mote, const Observation& seen, const AckJ
   context_.findings.kept(count > 1 ? "J4-REPEAT"_rule : "J4-CONTENT"_rule);
   context_.findings.kept("J4-SEQ"_rule);
   context_.findings.kept("J7-CHOICE"_rule);
-  if (count == kFewAcks + 2) {  // The first and five repeats are fine.
-    context_.report(
-        "J4-FEW"_rule, Severity::kWeak, seen.place, mote,
-        {"The " + number(count) + "th ack_join of one join.", "At most five repeats.", {}});
+  const std::uint8_t stated = context_.profile(mote).ack_join_max;
+  const std::uint8_t few = stated == machine::Profile{}.ack_join_max ? kFewAcks : stated;
+  if (count == few + 1) {
+    context_.report("J4-FEW"_rule, Severity::kWeak, seen.place, mote,
+                    {"The " + number(count) + "th ack_join of one join.",
+                     "At most " + number(few - 1) + " repeats.",
+                     {}});
   }
   watch.wrong_reply.reset();
   keep(watch, next_, mote, seen);

@@ -26,9 +26,9 @@
 // Tolerance: requests may come early_us() before the join period is over (decision 128), and as
 // late as they like. FAIL is right from expiries_min() periods on, less early_us(). An ack_join may
 // be repeated, kAckJoinsMax times, for a join period after the last request or after the acceptance
-// and the response time; more than kFewAcks repeats are weak. Without stamps a request is always in
-// time. Hypotheses that differ only in age are merged into the younger one, which allows more.
-// Beyond kSetMax of them the mote is inconclusive, and unknown until it joins again.
+// and the response time; more than kFewAcks, or than are stated, are weak. Without stamps a request
+// is always in time. Hypotheses that differ only in age are merged into the younger one, which
+// allows more. Beyond kSetMax of them the mote is inconclusive, and unknown until it joins again.
 //
 // Cannot know: whether a request with a new number is a new call or the same one (decision 104);
 // how a call ended that no log shows; whether the mote heard a link ack that the sniffer heard;

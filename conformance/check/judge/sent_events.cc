@@ -1,5 +1,7 @@
 // Judges what the application of a sender is told: send_result, and receive_ack of an ack or of its
 // timeout.
+#include <algorithm>
+
 #include "conformance/check/judge/peis_watch.h"
 #include "conformance/check/judge/sent.h"
 #include "conformance/machine/transport.h"
@@ -180,7 +182,8 @@ void Originals::told(std::uint16_t node, const Observation& seen, const machine:
                     seen.place, node,
                     {what + " " + ms_text(waited) + " after the message.",
                      "Not before the timeout, " + ms_text(context_.ack_timeout_us(node)) + ".",
-                     {}});
+                     {},
+                     true});
   } else if (too_late) {
     context_.report(
         "T3-TIMEOUT"_rule,
@@ -201,7 +204,7 @@ void Originals::close(std::uint16_t node, std::size_t newest, std::int64_t now_u
   if (sent.reused) return;
   const bool awaits =
       sent.net.reliable == 1 && sent.net.sound && sent.net.trans_id == component::kConnless;
-  if (!awaits || context_.profile(node).ack_timeout_ticks == 0) return;
+  if (!awaits) return;
   for (std::size_t i = 0; i < newest; ++i) {  // Sent again by its application: one event for both.
     if (ring.newest(i).net.seq_num == sent.net.seq_num) return;
   }
@@ -214,6 +217,7 @@ void Originals::close(std::uint16_t node, std::size_t newest, std::int64_t now_u
                      {}});
     return;
   }
+  if (context_.profile(node).ack_timeout_ticks == 0) return;
   // An unstated timeout may be longer than what is assumed (decision 110); for ever it is not.
   const std::int64_t waited = now_us - sent.place.time_us;
   const std::int64_t timeouts = context_.device(node).whole ? 1 : kTimeouts;
@@ -294,7 +298,8 @@ std::size_t Originals::waiting(std::uint16_t node, Link line) const {
 }
 
 bool Originals::full(std::uint16_t node, Link line) const {
-  return waiting(node, line) >= (line == Link::kRadio ? kRadioOut : kSerialOut);
+  const std::size_t room = line == Link::kRadio ? kRadioOut : kSerialOut;
+  return waiting(node, line) >= std::min(room, context_.terms(node).buffers);
 }
 
 // Says that send refused a message although fewer of its application's messages waited than a

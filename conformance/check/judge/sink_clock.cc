@@ -42,6 +42,7 @@ void SinkJoins::judge_clock(SinkWatch& sink, const Observation& seen, const Repl
       // than the old one did.
       const bool anew =
           reply.time_ms <= passed_ms + doubt_ms + kOffMs && !context_.device(sink.device).hearing;
+      said.beyond = !anew;  // What stands still is accepted, in each life.
       context_.report("J3-DRIFT"_rule, anew ? Severity::kInconclusive : Severity::kWeak, seen.place,
                       sink.device, std::move(said));
     } else {

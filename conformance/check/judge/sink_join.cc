@@ -238,6 +238,7 @@ void SinkJoins::request(std::uint16_t mote_device, const Observation& seen, cons
     const bool full = listed(sink) >= context_.profile(sink.device).members_max;
     watch.request_listed = sure && std::all_of(watch.set.begin(), watch.set.end(),
                                                [](const auto& h) { return h.member.has_value(); });
+    const bool answers_listed = !context_.profile(sink.device).listed_ignored;
     next_.clear();
     for (const SinkHypothesis& h : watch.set) {
       SinkHypothesis heard = h;
@@ -247,7 +248,8 @@ void SinkJoins::request(std::uint16_t mote_device, const Observation& seen, cons
           list, context_.join_context(sink.device, sink.island, seen.place.time_us), am,
           request.seq_num, request.descriptor, context_.actions);
       take_list(list, heard);
-      if (!sure || h.unknown || full) next_.push_back(h);
+      // Where a listed mote may be answered, it may be ignored, too.
+      if (!sure || h.unknown || full || (answers_listed && h.member)) next_.push_back(h);
       if (answers) {
         heard.unknown = false;
         if (heard.owed == heard.owed_seq.size()) {

@@ -386,7 +386,7 @@ void SynapticWatch::told(std::uint16_t device, const Observation& seen,
   const std::int64_t now = seen.place.time_us;
   if (!context_.run.has_time) return;
   if (is_twin(node, data.id)) {  // Which of the two it is about is not known.
-    in->told_us = in->waits_us = now;
+    in->told_us = in->waits_us = in->known_us = now;
     return;
   }
   if (in->ended_us >= 0) {
@@ -432,10 +432,13 @@ void SynapticWatch::told(std::uint16_t device, const Observation& seen,
                          ms_text(now - since + response) + ".",
                      "Status old without new data.",
                      {}});
-  } else if (knows && !fresh && came(since + apart, now - response)) {
-    context_.report(
-        "S2-SIGNAL"_rule, Severity::kFail, seen.place, device,
-        {"synData_received has status old, though data came since the last.", "Status new.", {}});
+  } else if (knows && !fresh &&
+             came(std::max(in->known_us, in->begun_us) + apart, now - response)) {
+    context_.report("S2-SIGNAL"_rule, Severity::kFail, seen.place, device,
+                    {"synData_received has status old, though data came since the last.",
+                     "Status new.",
+                     {},
+                     true});
   } else {
     context_.findings.kept(fresh ? "S2-SIGNAL"_rule : "S3-OLD"_rule);
   }
@@ -460,6 +463,8 @@ void SynapticWatch::told(std::uint16_t device, const Observation& seen,
          {}});
   }
   in->told_us = in->waits_us = now;
+  // Data that came just before a signal of status old are told by the next one.
+  in->known_us = fresh ? now : std::max(in->known_us, now - response);
   in->before = false;
   in->ticks.add(now);
   judge_grid(device, seen, in->ticks);

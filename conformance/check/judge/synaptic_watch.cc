@@ -555,6 +555,13 @@ void SynapticWatch::settle_at(std::uint16_t device, std::int64_t now_us) {
     if (now_us - since <= patience_us(device, in.told_us < 0, in.told_us)) continue;
     Place at;
     at.time_us = since;
+    const std::int64_t response = context_.response_us(device);
+    bool came = false;  // Then silence is right for nobody.
+    for (std::size_t i = 0; i < in.data_us.size(); ++i) {
+      const std::int64_t data_us = in.data_us[i];
+      came = came || (in.data_sure[i] && data_us > since && data_us <= now_us - response);
+    }
+    came = came && context_.device(device).hearing;
     const bool shifted = in.told_us >= 0 && node.restart_us > since;  // Perhaps the clock alone.
     context_.report(
         shifted ? "S6-CLOCK"_rule : "S2-SIGNAL"_rule, shifted ? Severity::kWeak : Severity::kFail,
@@ -562,7 +569,8 @@ void SynapticWatch::settle_at(std::uint16_t device, std::int64_t now_us) {
         {"No synData_received of the channel from " + number(in.id >> 16) + " to " +
              number(in.id & 0xFFFF) + " for " + ms_text(now_us - since) + ".",
          "One at each tick, " + ms_text(machine::us_of(node.channels.period_ticks)) + " apart.",
-         {}});
+         {},
+         came});
     in.waits_us = now_us;
     in.ticks = {};
   }

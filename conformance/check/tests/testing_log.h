@@ -11,9 +11,11 @@
 
 namespace rubric::check {
 
+/// Judges by the profile that the log's header names.
 inline Report judge_log(const std::string& log, bool sniffer_complete = false) {
   const check::Run run = must_read("log", log);
   Options options{.sniffer_complete = sniffer_complete, .start_cold = true};
+  options.deployed = log.find("%profile deployed") != log.npos;
   return judge(run, options);
 }
 
