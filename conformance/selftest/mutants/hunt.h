@@ -37,6 +37,10 @@ class Golden {
   /// Returns whether the mutant may differ from the machine in the case of this name: the machine
   /// does there what the mutant acts on.
   bool acts(const Mutant& mutant, const std::string& case_name) const;
+  /// Returns what the machine does in the case of this name, as kinds_of() says it.
+  const std::set<std::string>& kinds(const std::string& case_name) const {
+    return kinds_.at(case_name);
+  }
 
  private:
   std::vector<trace::Parsed> files_;
