@@ -26,7 +26,7 @@ from serial_testing import held_port
 HERE = pathlib.Path(__file__).resolve().parent
 MISTAKE = "reads_numbers_backwards"
 ITS_RULE = "T2-CONTENT"
-PARTS = 9
+PARTS = 14
 # They last two minutes each where time is real; java_base_station_suite_test runs them.
 LONG = "many.*"
 # A station lives for a second or two: code that runs once is not worth an optimising compiler.
