@@ -274,13 +274,13 @@ function(rubric_have_tools result what)
   endif()
 endfunction()
 
-# rubric_must_not_compile(NAME SOURCE x.cc DEFINE word EXPECT regex): compiling x.cc with -Dword
-# must fail with a message that matches; without it, it must succeed.
+# rubric_must_not_compile(NAME SOURCE x.cc REFUSALS word regex ...): compiling x.cc with each -Dword
+# must fail with a message that matches its regex; without any, it must succeed.
 function(rubric_must_not_compile name)
-  cmake_parse_arguments(arg "" "SOURCE;DEFINE;EXPECT" "" ${ARGN})
+  cmake_parse_arguments(arg "" "SOURCE" "REFUSALS" ${ARGN})
   rubric_script_test(${name} COMMAND ${PROJECT_SOURCE_DIR}/spec/cmake/must_not_compile.sh
     ${CMAKE_CXX_COMPILER} ${CMAKE_CURRENT_SOURCE_DIR}/${arg_SOURCE} ${PROJECT_SOURCE_DIR}
-    ${arg_DEFINE} "${arg_EXPECT}")
+    ${arg_REFUSALS})
 endfunction()
 
 # rubric_benchmark(NAME SOURCES a_bench.cc ... [DEPS lib ...]): a Google Benchmark program.

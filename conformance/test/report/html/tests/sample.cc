@@ -1,5 +1,5 @@
-// Makes a report for the test in a browser: the kit's own cases, each twice, on a good machine, on
-// a broken one, and on one whose every word is markup. Usage: rubric_report_sample DIR
+// Makes a report for the test in a browser: the kit's own cases, some of them twice, on a good
+// machine, on a broken one, and on one whose every word is markup. Usage: rubric_report_sample DIR
 #include <cstdio>
 #include <exception>
 #include <memory>
@@ -40,10 +40,12 @@ ImplementationRun run_plan(const std::string& name, const testing::Wrap& make, c
       plan);
 }
 
-// Repeats every case under another name.
-void repeat_all(ImplementationRun& run) {
+// Repeats some cases under other names: the earlier run has none of these.
+void repeat_some(ImplementationRun& run) {
   const std::size_t before = run.cases.size();
   for (std::size_t i = 0; i < before; ++i) {
+    const std::string family = run.cases[i].name.substr(0, run.cases[i].name.find('.'));
+    if (family != "j4" && family != "edges_j" && family != "n10") continue;
     CaseRun copy = run.cases[i];
     copy.name += ".again";
     run.cases.push_back(std::move(copy));
@@ -104,7 +106,7 @@ int write(const std::string& folder) {
   }
   earlier.verdicts[{"good", "j4.that_was"}] = "fail";
   earlier.verdicts[{"retired", "j4.accept"}] = "pass";
-  for (ImplementationRun& one : all.implementations) repeat_all(one);
+  for (ImplementationRun& one : all.implementations) repeat_some(one);
   all.implementations.push_back(hostile(all.implementations[0]));
   all.stale.push_back({"known.yaml:3", kMarkup});
   ReportFolder report(folder);
