@@ -211,7 +211,14 @@ void FrameDecoder::radio_headers(Bytes bytes, Envelope& out) const {
     out.mac.network = p[kMacHeaderBytes];
   }
   const RadioCarrier& carrier = i_frame ? radio_i_ : radio_t_;
-  if (!carrier.type) return;
+  if (!carrier.type) {
+    // What ends within its frame control field is of no kind: faulty, as the shortest frame is.
+    if (bytes.size() < Mac::FcfAt::kEnd) {
+      out.kind = Envelope::Kind::kLinkAck;
+      out.carrier = radio_ack_;
+    }
+    return;
+  }
   out.carrier = carrier.type;
   out.kind = Envelope::Kind::kMessage;
   if (bytes.size() < carrier.payload_at) return;

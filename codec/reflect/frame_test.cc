@@ -79,6 +79,11 @@ TEST(Frame, HeadersThatAreNotTinyOs_AreFieldsOfTheMessage) {
   EXPECT_TRUE(frame.has_payload);
   EXPECT_EQ(frame.payload_node, 0U);
   EXPECT_STREQ(frame.decoded.message()->name, "config");
+  // A protocol of serial lines alone says of half a frame control field what others say.
+  const Case half(Framing::kRadio, "02");
+  FrameDecoder(protocol).decode(half.packet, frame);
+  EXPECT_EQ(frame.error.fault, Fault::kTruncated);
+  EXPECT_EQ(frame.error.offset_bytes, 1U);
 }
 
 TEST(Frame, LinkAck_IsAMessageWithoutActiveMessage) {
