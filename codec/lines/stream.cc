@@ -25,7 +25,6 @@ namespace {
 using std::chrono::steady_clock;
 
 constexpr Milliseconds kRetry{50};
-constexpr const char* kThisHost = "127.0.0.1";
 
 // Returns whether the descriptor is ready before the deadline; continues after interruptions.
 bool wait_for(int fd, short events, SteadyTime deadline) {

@@ -62,6 +62,8 @@ class ByteStream {
   Descriptor descriptor_;
 };
 
+/// Where nobody names a host.
+constexpr const char* kThisHost = "127.0.0.1";
 /// An Internet address as the user wrote it.
 struct HostPort {
   std::string host;

@@ -35,10 +35,15 @@ void not_decoded(Frame& out, std::int64_t kind) {
   out.decoded.add_note({NoteKind::kNotDecoded, 0, nullptr, nullptr, kind});
 }
 
-// Finds the message's fields: the last child of the carrier's structure, if decoding got that far.
-void find_payload(Frame& out) {
+// Finds the message's fields: the last child of the carrier's structure, if decoding got that far;
+// all fields of a frame whose headers nothing else shows.
+void find_payload(Frame& out, bool is_am) {
   const Decoded& decoded = out.decoded;
   if (decoded.node_count() == 0) return;
+  if (!is_am) {
+    out.has_payload = true;
+    return;
+  }
   std::size_t last = 0;
   for (std::size_t i = 1; i < decoded[0].end; i = decoded[i].end) last = i;
   if (last && decoded[last].field == &last_field(*decoded[0].type)) {
@@ -47,7 +52,20 @@ void find_payload(Frame& out) {
   }
 }
 
+bool is_header(const Field& field, std::string_view name, std::string_view type) {
+  return field.name == name && field.type && field.type->id == type;
+}
+
 }  // namespace
+
+bool has_tinyos_headers(const Type& carrier) {
+  const int count = carrier.field_count;
+  const auto named = [&](int i, std::string_view name) { return carrier.fields[i].name == name; };
+  if (count < 2 || !named(count - 1, "payload")) return false;
+  if (is_header(carrier.fields[0], "am", "am_header")) return count == 2;
+  return is_header(carrier.fields[0], "mac", "mac_header") && named(count - 2, "type") &&
+         (count == 3 || (count == 4 && named(1, "network")));
+}
 
 const Switch* payload_choice(const Protocol& protocol, std::string_view carrier) {
   const Type* type = find_carrier(protocol, carrier);
@@ -56,6 +74,7 @@ const Switch* payload_choice(const Protocol& protocol, std::string_view carrier)
 
 FrameDecoder::RadioCarrier::RadioCarrier(const Type* carrier) : type(carrier) {
   if (!type) return;
+  is_am = has_tinyos_headers(*type);
   const Field& payload = last_field(*type);
   payload_at = static_cast<std::size_t>(payload.fixed_offset);
   type_at = static_cast<std::size_t>(payload.choice->key.steps[0].value);
@@ -70,6 +89,7 @@ FrameDecoder::FrameDecoder(const Protocol& protocol, const Type* bare)
     : protocol_(protocol),
       bare_(bare),
       serial_(find_carrier(protocol, "serial")),
+      serial_is_am_(!serial_ || has_tinyos_headers(*serial_)),
       radio_i_(find_carrier(protocol, "radio_i")),
       radio_t_(find_carrier(protocol, "radio_t")),
       radio_ack_(find_carrier(tinyos::tables::kProtocol, "radio_ack")),
@@ -91,7 +111,9 @@ void FrameDecoder::decode(const Packet& packet, Frame& out) const {
       break;
     case Envelope::Kind::kMessage:
       decode_carrier(*envelope.carrier, packet.bytes, out.decoded);
-      find_payload(out);
+      find_payload(out, envelope.carrier == serial_         ? serial_is_am_
+                        : envelope.carrier == radio_i_.type ? radio_i_.is_am
+                                                            : radio_t_.is_am);
       break;
     case Envelope::Kind::kLink:
       reflect::decode(*envelope.carrier, packet.bytes, Tail::kFault, true, out.decoded);
@@ -125,7 +147,8 @@ void FrameDecoder::decode_carrier(const Type& carrier, Bytes bytes, Decoded& out
 
 void FrameDecoder::serial_headers(Bytes bytes, Envelope& out) const {
   const std::uint8_t* p = bytes.data();
-  if (bytes.size() >= kAmHeaderBytes && Am::DispatchAt::allows(p[Am::DispatchAt::kAt])) {
+  if (serial_is_am_ && bytes.size() >= kAmHeaderBytes &&
+      Am::DispatchAt::allows(p[Am::DispatchAt::kAt])) {
     out.am = {true,
               Am::DestAt::load(p),
               Am::SrcAt::load(p),
@@ -188,7 +211,14 @@ void FrameDecoder::radio_headers(Bytes bytes, Envelope& out) const {
     out.mac.network = p[kMacHeaderBytes];
   }
   const RadioCarrier& carrier = i_frame ? radio_i_ : radio_t_;
-  if (!carrier.type) return;
+  if (!carrier.type) {
+    // What ends within its frame control field is of no kind: faulty, as the shortest frame is.
+    if (bytes.size() < Mac::FcfAt::kEnd) {
+      out.kind = Envelope::Kind::kLinkAck;
+      out.carrier = radio_ack_;
+    }
+    return;
+  }
   out.carrier = carrier.type;
   out.kind = Envelope::Kind::kMessage;
   if (bytes.size() < carrier.payload_at) return;

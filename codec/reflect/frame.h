@@ -57,12 +57,18 @@ struct Envelope {
 /// adapters write a radio frame as a serial packet with a message of the radio's (rct/1).
 const Switch* payload_choice(const Protocol& protocol, std::string_view carrier);
 
+/// Returns whether frames of this carrier are TinyOS's: its headers, under the names of
+/// `spec/wire`, and then the payload. Other frames are shown and written with all of their fields,
+/// as a message.
+bool has_tinyos_headers(const Type& carrier);
+
 /// A decoded packet. `packet` and the bytes are borrowed.
 struct Frame {
   const Packet* packet = nullptr;
-  Decoded decoded;                 ///< Empty (no nodes) where the bytes are not a message.
-  std::uint32_t payload_node = 0;  ///< Node of the outermost message's fields; 0 if bare.
-  bool has_payload = false;        ///< payload_node names a structure or opaque bytes.
+  Decoded decoded;  ///< Empty (no nodes) where the bytes are not a message.
+  /// Node of the outermost message's fields; 0 if bare, or where the carrier's headers are its own.
+  std::uint32_t payload_node = 0;
+  bool has_payload = false;  ///< payload_node names a structure or opaque bytes.
   ActiveMessage am;
   MacHeader mac;
   /// The fault of the framing, else of the content. The offset counts from the first byte of
@@ -96,6 +102,7 @@ class FrameDecoder {
     std::size_t type_at = 0;
     std::size_t payload_at = 0;
     std::int64_t network = -1;  ///< The value of the byte after the 802.15.4 header; -1: any.
+    bool is_am = true;          ///< Its headers are TinyOS's.
   };
 
   void headers(const Packet& packet, Envelope& out) const;
@@ -108,6 +115,7 @@ class FrameDecoder {
   const Protocol& protocol_;
   const Type* bare_;
   const Type* serial_;
+  bool serial_is_am_;  ///< Its headers are TinyOS's.
   RadioCarrier radio_i_;
   RadioCarrier radio_t_;
   const Type* radio_ack_;

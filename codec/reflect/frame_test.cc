@@ -4,6 +4,7 @@
 
 #include <string>
 #include <tuple>
+#include <vector>
 
 #include "codec/containers/tests/testing.h"
 #include "codec/generated/rubicon/tables.h"
@@ -54,6 +55,35 @@ TEST(Frame, RadioIFrame_AndTFrame_SameMessage) {
     EXPECT_EQ(frame.am.length, 6);
     EXPECT_EQ(frame.am.type, 14);
   }
+}
+
+/// The serial carrier of RUBICON, with another name of what its frames begin with.
+TEST(Frame, HeadersThatAreNotTinyOs_AreFieldsOfTheMessage) {
+  const Type& serial = *find_carrier(rubicon::tables::kProtocol, "serial");
+  ASSERT_TRUE(has_tinyos_headers(serial));
+  std::vector<Field> fields(serial.fields, serial.fields + serial.field_count);
+  fields[0].name = "head";
+  Type type = serial;
+  type.fields = fields.data();
+  const Carrier carrier{"serial", &type};
+  Protocol protocol = rubicon::tables::kProtocol;
+  protocol.carriers = &carrier;
+  protocol.carrier_count = 1;
+  EXPECT_FALSE(has_tinyos_headers(type));
+
+  const Case c(Framing::kSf, kSerialConfig);
+  Frame frame;
+  FrameDecoder(protocol).decode(c.packet, frame);
+  EXPECT_FALSE(frame.has_error());
+  EXPECT_FALSE(frame.am.present);
+  EXPECT_TRUE(frame.has_payload);
+  EXPECT_EQ(frame.payload_node, 0U);
+  EXPECT_STREQ(frame.decoded.message()->name, "config");
+  // A protocol of serial lines alone says of half a frame control field what others say.
+  const Case half(Framing::kRadio, "02");
+  FrameDecoder(protocol).decode(half.packet, frame);
+  EXPECT_EQ(frame.error.fault, Fault::kTruncated);
+  EXPECT_EQ(frame.error.offset_bytes, 1U);
 }
 
 TEST(Frame, LinkAck_IsAMessageWithoutActiveMessage) {

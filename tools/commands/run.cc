@@ -147,7 +147,7 @@ int run_station(const RunOptions& options) {
   open_files(options, {run::header_of(setup)}, setup.seed, keeper);
   run::Station station(setup, keeper);
   if (setup.role != node::Role::kBaseStation) {
-    text::print(stderr, "rubric: zep:{}\n", station.air_port());
+    text::print(stderr, "rubric: {}\n", station.air_address());
   }
   if (!setup.offered.empty()) {
     const std::string& name = station.serial_address();
@@ -415,7 +415,8 @@ void add_run(cli::Command& app) {
   sub.add_option("--actuators", options->actuators, "Give it these actuators, in the same form");
   sub.add_option("--loss", options->loss_percent, "Lose this many percent of the incoming frames")
       .between(0, 100);
-  sub.add_option("--seed", options->seed, "Seed waits, losses and the first number");
+  sub.add_option("--seed", options->seed, "Seed waits, losses and the first number")
+      .between(0, UINT32_MAX);
   cli::add_write_options(sub, options->write, "Keep all frames in this pcapng file", true, true);
   sub.add_option(
          "--space", options->space,

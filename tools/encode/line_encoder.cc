@@ -84,6 +84,12 @@ std::int64_t LineEncoder::am_type(std::string_view carrier_name) const {
   if (options_.am_type) return *options_.am_type;
   const reflect::Type* carrier =
       reflect::find_carrier(protocol_, carrier_name == "radio" ? "radio_i" : "serial");
+  if (carrier && !reflect::has_tinyos_headers(*carrier)) {
+    throw cli::UsageError(
+        "--as", fmt::format("{} is in frames with headers of their own; encode lines as 'rubric "
+                            "decode --format jsonl' prints them, or use --carrier none",
+                            message_->name));
+  }
   if (carrier) {
     if (const auto type = am_type_on(*carrier, *message_)) return *type;
   }

@@ -266,6 +266,11 @@ void settle_check_sum(const Value& line, OwnedPacket& out) {
                     serial ? "WIRE-SERIAL-CRC"_rule : "WIRE-RADIO-FCS"_rule);
 }
 
+// Returns where in a line the place `path` of the packet's structure is.
+std::string place_of(const std::string& path, bool is_whole) {
+  return is_whole && !path.empty() && path != "stale" ? "fields." + path : path_in_line(path);
+}
+
 void read_hex(const Value& line, std::string_view key, std::vector<std::uint8_t>& out) {
   out.clear();
   const std::string_view text = text_of(line, key);
@@ -318,16 +323,18 @@ RecordReader::Plan RecordReader::plan_radio(const Value& line, const Value& am) 
     values.set("fcf", Value::of_integer(*fcf));
     if (const Value* dsn = given(frame, "dsn")) values.set("dsn", *dsn);
     return {reflect::find_carrier(tinyos::tables::kProtocol, "radio_ack"), std::move(values),
-            nullptr};
+            nullptr, false};
   }
   for (const char* carrier : {"radio_beacon", "radio_command"}) {
     const Type* type = reflect::find_carrier(protocol_, carrier);
-    if (type && fields && type == bare_type(line)) return {type, *fields, nullptr};
+    if (type && fields && type == bare_type(line)) return {type, *fields, nullptr, true};
   }
   const bool has_network = !frame.find("network") || given(frame, "network");
   const Type* type = reflect::find_carrier(protocol_, has_network ? "radio_i" : "radio_t");
+  if (type && fields && !reflect::has_tinyos_headers(*type)) return {type, *fields, nullptr, true};
   const Value payload = fields ? *fields : Value{};
-  return {type, radio_values(with_am_type(line, am, type), frame, has_network, payload), nullptr};
+  return {type, radio_values(with_am_type(line, am, type), frame, has_network, payload), nullptr,
+          false};
 }
 
 // Returns the parts of the frame, without raw.
@@ -337,7 +344,7 @@ RecordReader::Plan RecordReader::plan(const Value& line, Framing framing) const 
   if (framing == Framing::kBare) {
     const Type* message = bare_type(line);
     if (!message || !fields) throw no_raw("there are no fields of a known message");
-    return {message, *fields, nullptr};
+    return {message, *fields, nullptr, true};
   }
   const bool nothing = !fields && am.keys.empty();
   // A radio acknowledgement is only a frame control field and a number.
@@ -350,6 +357,9 @@ RecordReader::Plan RecordReader::plan(const Value& line, Framing framing) const 
     made = plan_radio(line, am);
   } else {
     made.type = reflect::find_carrier(protocol_, "serial");
+    if (made.type && fields && !reflect::has_tinyos_headers(*made.type)) {
+      return {made.type, *fields, nullptr, true};
+    }
     made.more = reflect::payload_choice(protocol_, "radio_i");
     made.values = serial_values(with_am_type(line, am, made.type), object_of(line, "frame"),
                                 fields ? *fields : Value{});
@@ -368,29 +378,27 @@ Value RecordReader::with_am_type(const Value& line, Value am, const Type* carrie
   return am;
 }
 
-void RecordReader::build(const Value& line, const OwnedPacket& around,
+bool RecordReader::build(const Value& line, const OwnedPacket& around,
                          std::vector<std::uint8_t>& out) const {
   const Framing framing = around.packet.framing;
   const bool is_bare = framing == Framing::kBare;
   // An acknowledgement of the serial line has no packet.
   if (framing == Framing::kHdlc && !given(line, "fields") && object_of(line, "am").keys.empty()) {
-    return;
+    return false;
   }
   const Plan made = plan(line, framing);
   try {
     reflect::encode(*made.type, made.values, Bytes(stale_.data(), stale_.size()),
                     is_bare ? reflect::Tail::kStale : reflect::Tail::kFault, out, made.more);
   } catch (const reflect::EncodeError& error) {
-    const std::string path = is_bare && !error.path().empty() && error.path() != "stale"
-                                 ? "fields." + error.path()
-                                 : path_in_line(error.path());
-    throw RecordError(path, error.problem(), error.requirement());
+    throw RecordError(place_of(error.path(), made.is_whole), error.problem(), error.requirement());
   }
+  return made.is_whole;
 }
 
 void RecordReader::compare(const Value& line, const OwnedPacket& out) {
   built_.clear();
-  build(line, out, built_);
+  const bool is_whole = build(line, out, built_);
   if (built_ == out.bytes) return;
   Packet packet = out.view();
   const bool bare = packet.framing == Framing::kBare;
@@ -400,10 +408,9 @@ void RecordReader::compare(const Value& line, const OwnedPacket& out) {
   decoder.decode(packet, from_fields_);
   const auto found = first_difference(from_fields_.decoded, from_raw_.decoded);
   if (!found) return;
-  throw RecordError(
-      bare && found->path != "stale" ? "fields." + found->path : path_in_line(found->path),
-      "given " + found->in_a + ", but \"raw\" says " + found->in_b +
-          "; delete \"raw\" if the fields are meant");
+  throw RecordError(place_of(found->path, is_whole),
+                    "given " + found->in_a + ", but \"raw\" says " + found->in_b +
+                        "; delete \"raw\" if the fields are meant");
 }
 
 }  // namespace rubric::encode

@@ -58,12 +58,14 @@ class RecordReader {
     const reflect::Type* type = nullptr;
     Value values;
     const reflect::Switch* more = nullptr;  // As for reflect::encode.
+    bool is_whole = false;                  // The fields are those of the frame, its headers too.
   };
 
   Plan plan(const Value& line, Framing framing) const;
   Plan plan_radio(const Value& line, const Value& am) const;
   Value with_am_type(const Value& line, Value am, const reflect::Type* carrier) const;
-  void build(const Value& line, const OwnedPacket& around, std::vector<std::uint8_t>& out) const;
+  // Returns whether the fields of the line are all of the packet.
+  bool build(const Value& line, const OwnedPacket& around, std::vector<std::uint8_t>& out) const;
   void compare(const Value& line, const OwnedPacket& out);
   const reflect::Type* bare_type(const Value& line) const;
 

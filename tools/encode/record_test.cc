@@ -5,6 +5,7 @@
 
 #include <random>
 #include <string>
+#include <vector>
 
 #include "codec/generated/rubicon/tables.h"
 #include "tools/encode/members.h"
@@ -306,6 +307,37 @@ TEST(Json, Mistakes) {
        {std::string("{"), std::string("{\"a\":1,\"a\":2}"), std::string("1 2"), std::string(""),
         std::string("{'a':1}"), deep, std::string("1e999")}) {
     EXPECT_THROW(parse_json(bad), JsonError) << bad;
+  }
+}
+
+TEST(Record, HeadersThatAreNotTinyOs_AreFields) {
+  const reflect::Type& serial = *reflect::find_carrier(rubicon::tables::kProtocol, "serial");
+  std::vector<reflect::Field> fields(serial.fields, serial.fields + serial.field_count);
+  fields[0].name = "head";
+  reflect::Type type = serial;
+  type.fields = fields.data();
+  const reflect::Carrier carrier{"serial", &type};
+  reflect::Protocol protocol = rubicon::tables::kProtocol;
+  protocol.carriers = &carrier;
+  protocol.carrier_count = 1;
+  const Value line = parse_json(
+      R"({"schema":"rubric.decode/1","framing":"sf","frame":{"dispatch":0},"am":null,)"
+      R"("message":"config","path":["config"],"fields":{"head":{"dispatch":0,"dest":1,"src":0,)"
+      R"("length":3,"group":0,"type":37},"payload":{"type":10,"value":12}},)"
+      R"("raw":"00000100000300250a000c","error":null})");
+  RecordReader reader(protocol);
+  OwnedPacket packet;
+  reader.read(line, packet);
+  const std::vector<std::uint8_t> bytes = packet.bytes;
+  reader.read(changed(line, {{"raw", ""}}), packet);
+  EXPECT_EQ(packet.bytes, bytes);
+  try {
+    reader.read(changed(line, {{"fields.head.dest", "2"}}), packet);
+    FAIL() << "a changed field beside raw";
+  } catch (const RecordError& error) {
+    EXPECT_STREQ(error.what(),
+                 "fields.head.dest: given 2, but \"raw\" says 1; delete \"raw\" if the fields are "
+                 "meant");
   }
 }
 

@@ -13,6 +13,27 @@ from testing import Folder, run as run_any
 COUNT = 10000
 ENHANCED_PACKET = 6
 COMMENT = 1
+# Frames that begin otherwise than with TinyOS's headers.
+OWN_HEADERS = """
+meta: {id: own, endian: be}
+-carrier: serial
+seq:
+  - {id: head, type: u1}
+  - {id: kind, type: u1}
+  - {id: body, size-eos: true, type: {switch-on: kind, cases: &bodies {1: one}}}
+types:
+  on_air:
+    -carrier: radio_t
+    seq:
+      - {id: fcf, type: u2le}
+      - {id: dsn, type: u1}
+      - {id: pan, type: u2le}
+      - {id: to, type: u2le}
+      - {id: from, type: u2le}
+      - {id: kind, type: u1}
+      - {id: body, size-eos: true, type: {switch-on: kind, cases: *bodies}}
+  one: {seq: [{id: a, type: u2}, {id: rest, size-eos: true}]}
+"""
 RADIO_MESSAGES = ["ack_join", "join_reply", "join_request", "mac_ack", "rssi_beacon"]
 
 
@@ -170,6 +191,35 @@ class Generate(Folder):
             self.assertEqual(run("generate", "--format", form, "--count", "50").stderr, b"")
         said = run("generate", "--count", "3").stderr.decode()
         self.assertIn("messages do not come up", said)
+
+    def test_headers_that_are_not_tinyos_are_fields(self):
+        spec = self.write("own.ksy", OWN_HEADERS)
+        hand_made = (
+            # This could begin with an AM header.
+            ("00 01 FF FF 00 05 00 22 06", {"head": 0, "kind": 1, "body": {"a": 0xffff, "rest":
+                                                                          "0005002206"}}),
+            ("07 02 03 04", {"head": 7, "kind": 2, "body": "0304"}),
+            ("41 88 07 22 00 01 00 02 00 01 00 09 AA",
+             {"fcf": 0x8841, "dsn": 7, "pan": 0x22, "to": 1, "from": 2, "kind": 1,
+              "body": {"a": 9, "rest": "aa"}}))
+        for raw, fields in hand_made:
+            form = ("--input-format", "hex-radio", "--fcs", "none") if "fcf" in fields else ()
+            shown = self.shows(("decode", "--spec", spec, "--format", "jsonl", *form), stdin=raw)
+            record = json.loads(shown)
+            self.assertEqual(record["fields"], fields)
+            self.assertEqual(record["am"] is None, not form)
+            for whole in (record, {k: v for k, v in record.items() if k != "raw"}):
+                self.shows(("encode", "--spec", spec), raw + "\n", stdin=json.dumps(whole))
+            record["fields"]["kind"] = 9
+            self.refused(("encode", "--spec", spec), 'fields.kind: given 9, but "raw" says',
+                         code=66, stdin=json.dumps(record))
+        self.refused(("encode", "--spec", spec, "--as", "one"), "headers of their own")
+        file, wanted = self.generate("pcapng", "--spec", str(spec), "--count", "300")
+        shown = run("decode", "--spec", str(spec), "--format", "jsonl", str(file), code=1).stdout
+        made = run("encode", "--spec", str(spec), input=shown).stdout.decode()
+        self.assertEqual([one["raw"] for one in wanted if one["verdict"] == "valid"],
+                         [line.replace(" ", "").lower() for line, one in
+                          zip(made.splitlines(), wanted, strict=True) if one["verdict"] == "valid"])
 
     def assert_refused(self, text, *arguments, code=64):
         said = run("generate", *arguments, code=code).stderr.decode()

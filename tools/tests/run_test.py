@@ -515,6 +515,7 @@ islands:
                 (("base-station", "--island", "11", "--credentials", "x"),
                  "--credentials: needs a space at a broker"),
                 (("mote", "--id", "2", "--radio", "sf@x:1"), "expected zep:PORT"),
+                (("mote", "--id", "2", "--seed", "4294967296"), "not in range 0 to 4294967295"),
                 (("sink", "--island", "11", "--serial", "9002"), "expected sf-server:PORT"),
                 (("sink", "--island", "11", "--app", "demo"), "the demo is a mote's"),
                 (("mote", "--id", "2", "--actuators", "hand"), "'hand' is none of: led open"),

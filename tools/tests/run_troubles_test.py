@@ -98,6 +98,11 @@ islands:
             self.assertIn(str(port), mote.waits_for(
                 rb"zep:(\d+): the port is held by a program that does not answer"))
             self.assertEqual(mote.end()[0], 0)
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
+            other.bind(("127.0.0.2", port))
+            mote = self.started("mote", "--id", "5", "--radio", f"zep:127.0.0.2:{port}")
+            mote.waits_for(rb"(zep:127.0.0.2:\d+: nothing there answers as an air does)")
+            self.assertEqual(mote.end()[0], 0)
         hub = self.started("mote", "--id", "5", "--radio", f"zep:{port}", "--app", "-")
         hub.waits_for(rb"(zep:\d+\n)")
         mote = self.started("mote", "--id", "6", "--radio", f"zep:{port}", "--app", "-")

@@ -480,6 +480,8 @@ islands:
         self.assertEqual(code, 64)
         self.assertIn(f"{wrong}:2: expected user=, password=", err)
         self.assertNotIn("sesame", err)
+        gone = self.folder / "gone"
+        self.refused(("run", *sink, "--credentials", gone), f"{gone}: cannot be read", 66)
 
     def tls_broker(self, asks=False):
         """Makes the broker one with TLS. The file of credentials, written, and its lines but for

@@ -22,8 +22,8 @@ RADIO = "spec/captures/firmware/g2_stray_reply_while_joining.pcapng"
 NTP_TO_1970 = 2_208_988_800
 
 
-def zep(frame, number=1, device=2, channel=26):
-    stamp = (NTP_TO_1970 + 1000, 1 << 31)
+def zep(frame, number=1, device=2, channel=26, seconds=1000.5):
+    stamp = (NTP_TO_1970 + int(seconds), int(seconds % 1 * (1 << 32)))
     return b"EX\x02\x01" + struct.pack(">BHBBIII", channel, device, 1, 255, *stamp, number) \
         + bytes(10) + bytes([len(frame)]) + frame
 
@@ -84,6 +84,23 @@ class Zep(LiveTest):
             frame = bytes.fromhex(f"6188{dsn:02x}2200010005003f06")
             station.send(zep(frame + fcs(frame), device=5, channel=channel))
         self.assertEqual(station.socket.recv(128)[32:35], bytes.fromhex("020008"))
+
+    def test_a_node_keeps_frames_in_the_order_in_which_it_takes_them(self):
+        kept = self.folder / "kept.pcapng"
+        sink, port = self.hub("run", "sink", "--island", "11", "--radio", "zep:0", "--write", kept)
+        station = Station(self, port)
+        now = time.time()
+        # The stamps of motes 5 and 6 say another order. That of one for mote 9 holds.
+        for mote, dest, late in ((5, 1, 0), (6, 1, 0.02), (7, 9, 0.05)):
+            frame = bytes.fromhex(f"4188{mote:02x}2200{dest:02x}00{mote:02x}003f1c"
+                                  f"000bfffd000b00{mote:02x}00000703030a55")
+            station.send(zep(frame + fcs(frame), device=mote, seconds=now - late))
+        time.sleep(0.5)
+        self.assertEqual(sink.end()[0], 0)
+        times = {record["frame"]["src"]: record["time"] for record in lines_of(kept)
+                 if record["framing"] == "radio"}
+        self.assertLess(times[5], times[6])
+        self.assertLess(times[7], times[5])
 
     def test_a_hub_passes_frames_on_and_another_takes_its_place(self):
         hub, port = self.hub("decode", "zep:0", "--format", "jsonl")

@@ -80,7 +80,8 @@ void check_radio(Check& check, const Type& carrier) {
       last.choice->key->field && last.choice->key->field->width_bytes == 1) {
     return;
   }
-  check.error(carrier.place, fmt::format("carrier {} does not end in a message", carrier.carrier),
+  check.error(place_of(carrier.places, "-carrier", carrier.place),
+              fmt::format("carrier {} does not end in a message", carrier.carrier),
               "at the end size-eos: true with a switch on a u1 field was expected");
 }
 

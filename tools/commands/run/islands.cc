@@ -161,8 +161,7 @@ class Islands {
 
   void settle(const EcologyIsland& island, Plan& plan) {
     Inhabitant& sink = add(plan.sink(island), island.sink_app, nullptr);
-    const std::uint16_t air = sink.station->air_port();
-    text::print(stderr, "rubric: island {}: zep:{}, {}\n", island.island, air,
+    text::print(stderr, "rubric: island {}: {}, {}\n", island.island, sink.station->air_address(),
                 sink.station->serial_address());
     if (island.serial.empty()) {
       StationSetup setup = plan.base_station(island);
@@ -178,7 +177,7 @@ class Islands {
     }
     for (const EcologyMote& mote : island.motes) {
       StationSetup setup = plan.mote(island, mote);
-      setup.air.port = air;
+      setup.air.port = sink.station->air_port();
       add(std::move(setup), mote.app, &mote);
     }
   }

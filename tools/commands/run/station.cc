@@ -269,14 +269,22 @@ bool Station::hear_serial() {
   return true;
 }
 
-// Says that another program has the port of the air.
+std::string Station::air_address() const {
+  const bool here = setup_.air.host == lines::kThisHost;
+  return fmt::format("zep:{}{}{}", here ? "" : setup_.air.host, here ? "" : ":", radio_->port());
+}
+
+// Says that another program has the port of the air, or that another host does not answer.
 void Station::look_at_air() {
   if (!radio_ || said_unanswered_ || !radio_->is_unanswered()) return;
   said_unanswered_ = true;
+  if (setup_.air.host != lines::kThisHost) {
+    return text::print(stderr, "rubric: {}: nothing there answers as an air does\n", air_address());
+  }
   text::print(stderr,
-              "rubric: zep:{}: the port is held by a program that does not answer as an air does "
+              "rubric: {}: the port is held by a program that does not answer as an air does "
               "('ss -ulpn sport = {}' names it)\n",
-              radio_->port(), radio_->port());
+              air_address(), radio_->port());
 }
 
 // Says, at most once a second, how many messages found no room in the radio's buffer.

@@ -65,6 +65,8 @@ class Station final : private LayerUser, public Caller {
   void join_peers(Peers& peers) { peers_ = &peers; }
   const StationSetup& setup() const { return setup_; }
   std::uint16_t air_port() const { return radio_->port(); }
+  /// Returns the air as --radio names it.
+  std::string air_address() const;
   /// Returns the sink's serial line as a base station names it.
   const std::string& serial_address() const { return serial_->other_end(); }
   /// Returns whether somebody is at the other end of its serial line. From any thread.

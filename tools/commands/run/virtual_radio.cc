@@ -31,6 +31,8 @@ constexpr milliseconds kAckWait{100};
 constexpr std::int64_t kLateMostNs = 100'000'000;
 
 constexpr std::uint16_t kAll = 0xFFFF;
+constexpr std::uint16_t kNobody = 0;
+constexpr std::int64_t kStepNs = 1'000;  // What capture files tell apart.
 constexpr std::size_t kAckBytes = tinyos::MacAckView::kMaxSizeBytes;
 constexpr std::size_t kHeader = reflect::kRadioIHeaderBytes;
 constexpr std::int64_t kByteNs = 32'000;
@@ -108,6 +110,14 @@ void VirtualRadio::handle(Bytes datagram) {
   packet.time_ns = lines::air_time_ns(packet.time_ns);
   const std::vector<std::uint8_t> kept(packet.bytes.begin(), packet.bytes.end());
   packet.bytes = Bytes(kept.data(), kept.size());
+  // Two senders that were late may have stamped their frames in another order than that in which
+  // this end takes them.
+  const std::uint16_t dest = kept.size() < kHeader ? kNobody : Mac::DestAt::load(kept.data());
+  const bool is_for_us = dest == settings_.address || dest == kAll;
+  if (is_for_us) {
+    packet.time_ns = std::max(packet.time_ns, std::min(came_ns_ + kStepNs, wall_ns()));
+    came_ns_ = packet.time_ns;
+  }
   user_.on_air(packet);
   // A frame is heard at its end, which is also the earliest time of what it causes.
   const std::int64_t end_ns =
@@ -129,9 +139,8 @@ void VirtualRadio::handle(Bytes datagram) {
   if (asks) taken_ = steady_clock::now() + kAckWait;
   if (!asks && control != reflect::fcf_of(FrameControl::kData)) return;
   const std::uint16_t src = Mac::SrcAt::load(kept.data());
-  const std::uint16_t dest = Mac::DestAt::load(kept.data());
   if (src == settings_.address) user_.twin();
-  if (lost || !user_.listens() || (dest != settings_.address && dest != kAll)) return;
+  if (lost || !user_.listens() || !is_for_us) return;
   if (asks && dest != kAll) {
     tinyos::MacAck ack;
     ack.fcf = reflect::fcf_of(FrameControl::kAck);

@@ -95,7 +95,7 @@ void add_credentials(const std::string& file, MqttSettings& settings) {
     return;
   }
   std::ifstream in(file);
-  if (!in) throw std::invalid_argument(file + ": cannot be read");
+  if (!in) throw lines::Broken(file + ": cannot be read");
   const std::map<std::string, std::string*> places = {{"user", &settings.user},
                                                       {"password", &settings.password},
                                                       {"ca", &settings.ca_file},

@@ -27,7 +27,7 @@ struct MqttSettings {
 MqttSettings parse_mqtt(const std::string& url);
 /// Takes user, password, ca, cert and key from lines NAME=VALUE of a file, unless its path is
 /// empty, and else user and password from RUBRIC_MQTT_USER and RUBRIC_MQTT_PASSWORD. Throws
-/// std::invalid_argument with the place of a mistake.
+/// std::invalid_argument with the place of a mistake, lines::Broken for a file that cannot be read.
 void add_credentials(const std::string& file, MqttSettings& settings);
 
 /// Reconnects after pauses that grow from one second to 30, and writes its tuples anew then. Says

@@ -143,7 +143,7 @@ std::string pair_label(const Frame& frame) {
 
 bool Counters::is_repeated(const Frame& frame, const Origin& origin) {
   const Decoded& decoded = frame.decoded;
-  if (!frame.has_payload || frame.malformed()) return false;
+  if (!frame.has_payload || !decoded.message() || frame.malformed()) return false;
   if (frame.payload_node >= decoded.node_count()) return false;
   const std::size_t field = decoded.child(frame.payload_node, "seq_num");
   if (!field || decoded[field].kind != NodeKind::kNumber) return false;

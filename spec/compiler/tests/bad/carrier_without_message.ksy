@@ -1,4 +1,4 @@
-# expect: 8:3: carrier radio_t does not end in a message; at the end size-eos: true with a switch
+# expect: 9:15: carrier radio_t does not end in a message; at the end size-eos: true with a switch
 # on a u1 field was expected
 meta:
   id: bad
