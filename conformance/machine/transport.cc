@@ -114,7 +114,7 @@ bool must_ack(bool reliable, Address dest, std::uint8_t trans_id, std::uint8_t a
   if (trans_id != static_cast<std::uint8_t>(Component::kConnless)) return false;
   //= T2-BROADCAST: A broadcast is not acked.
   if (is_broadcast(dest)) return false;
-  return is_known_app(app_id);  // Else dropped; both acking and not are legal (decision 111).
+  return is_known_app(app_id);  // Else dropped; both acking and not are lawful (decision 111).
 }
 
 std::int32_t acked_seq_num(Bytes body) {

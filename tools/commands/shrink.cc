@@ -35,7 +35,7 @@ struct ShrinkOptions {
 
 constexpr const char* kShrinkFooter =
     "The result fails at the same line and by the same rule; the reference machine and all its\n"
-    "legal variants pass it, as far as they pass the original. Without any one of its lines it "
+    "lawful variants pass it, as far as they pass the original. Without any one of its lines it "
     "would\n"
     "not do so. It is a golden trace of its own. Machine and variants are RUBICON's: for another\n"
     "protocol name an implementation that keeps its rules by --reference.\n"
@@ -68,7 +68,7 @@ std::optional<Failing> find_failing(const suite::Cases& cases, const ShrinkOptio
   return std::nullopt;
 }
 
-// Returns the user's references, and for RUBICON the reference machine and its legal variants with
+// Returns the user's references, and for RUBICON the reference machine and its lawful variants with
 // what is stated, as far as they pass a trace.
 std::vector<shrink::Player> references(
     const trace::File& file, const trace::Statement& stated,
@@ -91,7 +91,7 @@ std::vector<shrink::Player> references(
   };
   if (trace::protocol().has_machine) {
     add_machine([] { return std::make_unique<runner::Machine>(); });
-    for (const mutants::LegalVariant& one : mutants::legal_variants()) {
+    for (const mutants::LawfulVariant& one : mutants::lawful_variants()) {
       add_machine(mutants::wrapped(one.step));
     }
   }

@@ -28,7 +28,7 @@ ALLOWED = {
     "conformance/selftest/lawful_traffic/main.cc": ["conformance/selftest/lawful_traffic",
                                                     "tools/cli/command.h"],
     "conformance/adapters/machine": ["codec", "conformance", "tools/cli/command.h"],
-    # Legal traffic is written from the rules: it shares nothing with what it is a test of.
+    # Lawful traffic is written from the rules: it shares nothing with what it is a test of.
     "conformance/selftest/lawful_traffic": ["codec", "conformance/selftest/lawful_traffic"],
     # Written from the rules as well, and tried by what the reference machine passes.
     "conformance/node": ["codec/runtime", "codec/generated", "conformance/node"],

@@ -16,7 +16,7 @@ namespace {
 
 struct Which {
   std::string mutant;
-  std::string legal;
+  std::string lawful;
   std::string cases;
 };
 
@@ -28,21 +28,21 @@ mutants::StepMaker find(const All& all, const std::string& name) {
 }
 
 std::unique_ptr<runner::Subject> make_subject(const Which& which) {
-  if (which.mutant.empty() && which.legal.empty()) return std::make_unique<runner::Machine>();
-  mutants::StepMaker step = which.mutant.empty() ? find(mutants::legal_variants(), which.legal)
+  if (which.mutant.empty() && which.lawful.empty()) return std::make_unique<runner::Machine>();
+  mutants::StepMaker step = which.mutant.empty() ? find(mutants::lawful_variants(), which.lawful)
                                                  : find(mutants::named_mutants(), which.mutant);
   if (!step && !which.mutant.empty() && !which.cases.empty()) {
     step = find(mutants::generated_mutants(mutants::Golden(which.cases)), which.mutant);
   }
-  if (!step) throw std::runtime_error("no machine is called " + which.mutant + which.legal);
+  if (!step) throw std::runtime_error("no machine is called " + which.mutant + which.lawful);
   return std::make_unique<mutants::Wrapped>(step);
 }
 
 int run(const Which& which) {
   targets::Identity identity = targets::machine_identity();
-  if (!which.mutant.empty() || !which.legal.empty()) {
+  if (!which.mutant.empty() || !which.lawful.empty()) {
     identity.name = "broken_or_unusual";
-    identity.version = which.mutant + which.legal;
+    identity.version = which.mutant + which.lawful;
     std::replace(identity.version.begin(), identity.version.end(), ' ', '_');
   }
   runner::SubjectTarget target(make_subject(which));
@@ -59,7 +59,7 @@ int main(int argc, char** argv) {
   rubric::Which which;
   const auto mutant =
       program.add_option("--mutant", which.mutant, "Run the broken machine of this name");
-  program.add_option("--legal", which.legal, "Run the unusual but legal machine of this name")
+  program.add_option("--lawful", which.lawful, "Run the unusual but lawful machine of this name")
       .excludes(mutant);
   program.add_option("--cases", which.cases,
                      "Read these golden traces, so that --mutant can name a mutant made from them");

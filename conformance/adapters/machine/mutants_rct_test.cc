@@ -76,12 +76,12 @@ TEST(MutantsRct, WhatIsFoundHereIsFoundThere) {
   EXPECT_EQ(there, readme_number("they find #"));
 }
 
-TEST(MutantsRct, NoLegalVariantFails) {
+TEST(MutantsRct, NoLawfulVariantFails) {
   std::size_t runs = 0;
   std::size_t failed = 0;
   std::size_t weak = 0;
-  const std::vector<LegalVariant> variants = legal_variants();
-  for (const LegalVariant& variant : variants) {
+  const std::vector<LawfulVariant> variants = lawful_variants();
+  for (const LawfulVariant& variant : variants) {
     RctAttachment attachment = attached(variant.step);
     for (const CaseRef& ref : golden().cases()) {
       const runner::CaseResult result = run_on(attachment, ref);
@@ -94,10 +94,10 @@ TEST(MutantsRct, NoLegalVariantFails) {
                            << runner::explain(result, ref.file->file_name);
     }
   }
-  std::printf("legal variants: %zu, runs through rct/1 %zu, weak %zu, failed %zu\n",
+  std::printf("lawful variants: %zu, runs through rct/1 %zu, weak %zu, failed %zu\n",
               variants.size(), runs, weak, failed);
   // Those that state something are tried in process.
-  EXPECT_EQ(variants.size() + stated_variants().size(), readme_number("# unusual but legal"));
+  EXPECT_EQ(variants.size() + stated_variants().size(), readme_number("# unusual but lawful"));
 }
 
 // Machines by name, as a user starts them.
@@ -105,9 +105,9 @@ TEST(MutantsRct, NamedOnesAreStartedByName) {
   const auto mutant = targets::attach(
       std::string(RUBRIC_MACHINE_ADAPTER) + " --mutant " + named_mutants().front().name, {});
   EXPECT_EQ(mutant->identity().name, "broken_or_unusual");
-  const auto legal = targets::attach(
-      std::string(RUBRIC_MACHINE_ADAPTER) + " --legal " + legal_variants().front().name, {});
-  EXPECT_EQ(legal->identity().version, legal_variants().front().name);
+  const auto lawful = targets::attach(
+      std::string(RUBRIC_MACHINE_ADAPTER) + " --lawful " + lawful_variants().front().name, {});
+  EXPECT_EQ(lawful->identity().version, lawful_variants().front().name);
   const auto unknown =
       targets::attach(std::string(RUBRIC_MACHINE_ADAPTER) + " --mutant none.such", {});
   EXPECT_THROW(unknown->identity(), runner::TargetBroken);

@@ -88,7 +88,7 @@ std::int64_t JoinWatch::waits_us(const Debt& debt) const {
   return context_.join_call_us(context_.slowest_mote(debt.mote_am));
 }
 
-// A late answer is legal (decision 125): it is missing once the mote's call is over, here the
+// A late answer is lawful (decision 125): it is missing once the mote's call is over, here the
 // longest of them all.
 void JoinWatch::hears_on(std::uint16_t sink, std::int64_t now_us) {
   if (context_.device(sink).hearing) return;
@@ -193,7 +193,7 @@ void JoinWatch::settle(std::uint16_t node, std::int64_t now_us, bool end) {
   const Device& device = context_.device(node);
   std::erase_if(debts, [&](const Debt& debt) {
     // A later event of the application may still show whether it is owed. By a log that is not
-    // whole a late reply is legal (decision 125): it is missing once the mote's call is over, or
+    // whole a late reply is lawful (decision 125): it is missing once the mote's call is over, or
     // when a later one was sent.
     const bool patient = debt.owes == Owes::kReply && device.hearing && !device.whole && !end;
     const std::int64_t waits_us = patient && !debt.overtaken ? this->waits_us(debt) : 0;

@@ -36,8 +36,8 @@
 //
 // Why an inconclusive finding is never a failure here: the machine's own functions decide what a
 // state allows, so the set of a lawful mote stays filled as long as nothing escapes
-// (align_legal_test.cc and legal_test.cc try this with lawful traffic). It can become empty because
-// a frame escaped. Where one would explain what was seen, the severity is that of
+// (align_lawful_test.cc and lawful_test.cc try this with lawful traffic). It can become empty
+// because a frame escaped. Where one would explain what was seen, the severity is that of
 // Context::without(): a failure only if none can have escaped. So it is with a net_msg before the
 // join and with an ack_join that fits the mote's own request. A request with a number that changed
 // is inconclusive, and so is one of a mote that only a link ack shows to have joined. What no

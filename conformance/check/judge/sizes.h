@@ -1,5 +1,5 @@
 // What a message says of its own size. Bytes that are no content: left over in the sender's buffer.
-// Legal on a serial line (N6-CONTENT); a note shows where they are, since readers take them for
+// Lawful on a serial line (N6-CONTENT); a note shows where they are, since readers take them for
 // content.
 #pragma once
 

@@ -194,25 +194,25 @@ TEST(Steps, TapsOneAfterTheOtherInOneFileDoNotStep) {
   EXPECT_TRUE(run.facts.empty());
 }
 
-// A sink of legal traffic forwards one message twice; far from it the clock steps.
+// A sink of lawful traffic forwards one message twice; far from it the clock steps.
 TEST(Steps, ARealFaultInAStretchWithoutOneIsFound) {
   std::size_t planted = 0;
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
     lawful::Traffic traffic = lawful::generate("usual", seed);
     const auto run_of = [&] { return must_read("usual", lawful::to_pcapng(traffic)); };
     constexpr std::int64_t kBaseUs = 10'000'000'000;
-    for (lawful::LegalPacket& packet : traffic.packets) packet.time_us += kBaseUs;
+    for (lawful::LawfulPacket& packet : traffic.packets) packet.time_us += kBaseUs;
     // The sink forwards one message twice, in the first half or in the second one.
     const bool early = seed % 2 == 0;
     const std::size_t middle = traffic.packets.size() / 2;
     std::size_t victim = early ? middle / 2 : middle + middle / 2;
-    const auto up = [&](const lawful::LegalPacket& packet) {
+    const auto up = [&](const lawful::LawfulPacket& packet) {
       return packet.interface != "radio" && packet.direction == Direction::kOutbound &&
              packet.record.size() > 30;
     };
     while (victim + 1 < traffic.packets.size() && !up(traffic.packets[victim])) ++victim;
     const auto place = traffic.packets.begin() + static_cast<std::ptrdiff_t>(victim);
-    traffic.packets.insert(place, lawful::LegalPacket(*place));
+    traffic.packets.insert(place, lawful::LawfulPacket(*place));
     const std::multiset<std::string> found = failures_of(judge(run_of(), complete()));
     if (found.empty()) continue;
     ++planted;

@@ -69,7 +69,7 @@ Traffic generate(std::string_view variant, std::uint64_t seed) {
   } else if (const Variant* one = find_variant(variant)) {
     chosen.push_back(one);
   } else {
-    throw std::invalid_argument("no legal variant is named " + std::string(variant));
+    throw std::invalid_argument("no lawful variant is named " + std::string(variant));
   }
   Plan plan = common_plan(random);
   for (const Variant* part : chosen) part->configure(plan, random);
@@ -95,7 +95,7 @@ std::string to_pcapng(const Traffic& traffic) {
   PcapngWriter writer;
   std::string out;
   writer.begin(out);
-  for (const LegalPacket& from : traffic.packets) {
+  for (const LawfulPacket& from : traffic.packets) {
     Packet packet;
     packet.time_ns = from.time_us * kNsPerUs;
     packet.direction = from.direction;
@@ -123,7 +123,7 @@ std::string to_truth_json(const Traffic& traffic) {
                          serial ? fmt::format(", \"interface\": \"serial:{}\"", node.number) : "");
   }
   return fmt::format(
-      "{{\n  \"schema\": \"rubric.legal/1\",\n  \"variant\": \"{}\",\n  \"variants\": [{}],\n"
+      "{{\n  \"schema\": \"rubric.lawful/1\",\n  \"variant\": \"{}\",\n  \"variants\": [{}],\n"
       "  \"decisions\": [{}],\n  \"seed\": {},\n  \"profile\": \"paper\",\n  \"worst\": \"{}\",\n"
       "  \"options\": {{\"sniffer\": \"{}\", \"start\": \"{}\", \"radio\": {}, \"serial\": {}, "
       "\"well_formed\": {}}},\n  \"packets\": {},\n  \"nodes\": [\n{}\n  ]\n}}\n",

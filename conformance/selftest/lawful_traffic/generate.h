@@ -1,4 +1,4 @@
-// Legal traffic: `rubric check` must not find a failure in it under profile paper.
+// Lawful traffic: `rubric check` must not find a failure in it under profile paper.
 //
 // Written from the rules alone; it shares no code with the reference machine and the checker.
 #pragma once
@@ -19,7 +19,7 @@ Traffic generate(std::string_view variant, std::uint64_t seed);
 
 /// Returns it as a pcapng file: interfaces `radio` and `serial:ID`.
 std::string to_pcapng(const Traffic& traffic);
-/// Returns its contents as JSON (schema rubric.legal/1).
+/// Returns its contents as JSON (schema rubric.lawful/1).
 std::string to_truth_json(const Traffic& traffic);
 /// Returns the events at the applications, one JSON object per line, as in the captures of the
 /// firmware.

@@ -1,4 +1,4 @@
-// rubric_lawful: writes captures of legal networks.
+// rubric_lawful: writes captures of lawful networks.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -95,7 +95,7 @@ int run(const LawfulOptions& options) {
 int main(int argc, char** argv) {
   rubric::cli::Command program(
       "rubric_lawful",
-      "Write captures of legal RUBICON networks, to test checkers for false alarms.");
+      "Write captures of lawful RUBICON networks, to test checkers for false alarms.");
   LawfulOptions options;
   program.add_option("--variant", options.variant, "Write this variant, all (each once) or mixed");
   program.add_option("--recorder", options.recorder, "Record the traffic in this way");

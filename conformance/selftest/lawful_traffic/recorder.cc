@@ -52,13 +52,13 @@ void wrong_stamp(Traffic& traffic, Random& random) {
 }
 void drifts(Traffic& traffic, Random& random) {
   const std::int64_t ppm = random.chance(50) ? kDriftPpm : -kDriftPpm;
-  for (LegalPacket& packet : traffic.packets) {
+  for (LawfulPacket& packet : traffic.packets) {
     packet.time_us += (packet.time_us - kEpochUs) * ppm / 1'000'000;
   }
 }
 void drops(Traffic& traffic, Random& random) {
   bool first = true;  // It stays, so that a cold start remains one.
-  std::erase_if(traffic.packets, [&](const LegalPacket&) {
+  std::erase_if(traffic.packets, [&](const LawfulPacket&) {
     return !std::exchange(first, false) && random.chance(kDroppedPercent);
   });
   traffic.sniffer_complete = false;
@@ -87,7 +87,7 @@ void record(Traffic& traffic, std::string_view recorder, std::uint64_t seed) {
   for (const Recorder& one : kRecorders) {
     if (one.name != recorder) continue;
     if (one.record == exact) return;
-    for (LegalPacket& packet : traffic.packets) packet.time_us += kEpochUs;
+    for (LawfulPacket& packet : traffic.packets) packet.time_us += kEpochUs;
     Random random(seed);
     one.record(traffic, random);
     return;

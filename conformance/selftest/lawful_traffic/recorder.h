@@ -1,4 +1,4 @@
-// Records legal traffic as real recorders do: with wrong stamps and missing packets. The
+// Records lawful traffic as real recorders do: with wrong stamps and missing packets. The
 // nodes stay honest.
 #pragma once
 

@@ -12,14 +12,14 @@ namespace rubric::lawful {
 /// A packet as a capture holds it. On `radio` (link type 195) the record is a frame with FCS and
 /// the time its start; on `serial:ID` (link type 147) it is a frame from the kind byte to the CRC,
 /// unescaped, and the time its end; kInbound is host to mote.
-struct LegalPacket {
+struct LawfulPacket {
   std::int64_t time_us = 0;
   std::string interface;
   std::uint16_t link_type = 0;
   Direction direction = Direction::kUnknown;
   std::vector<std::uint8_t> record;
 };
-inline bool operator==(const LegalPacket& a, const LegalPacket& b) {
+inline bool operator==(const LawfulPacket& a, const LawfulPacket& b) {
   return a.time_us == b.time_us && a.interface == b.interface && a.link_type == b.link_type &&
          a.direction == b.direction && a.record == b.record;
 }
@@ -66,8 +66,8 @@ struct Traffic {
   bool has_serial = true;
   bool all_well_formed = true;  ///< False: a tester or noise made malformed packets.
   std::vector<NodeInfo> nodes;
-  std::vector<LegalPacket> packets;  ///< In order of time.
-  std::vector<AppEvent> events;      ///< In order of time, of the whole run.
+  std::vector<LawfulPacket> packets;  ///< In order of time.
+  std::vector<AppEvent> events;       ///< In order of time, of the whole run.
 };
 
 }  // namespace rubric::lawful

@@ -1,4 +1,4 @@
-// The legal variants: each is one honest way to follow the rules, or a legal event.
+// The lawful variants: each is one honest way to follow the rules, or a lawful event.
 #pragma once
 
 #include <span>
@@ -19,7 +19,7 @@ struct Variant {
   void (*configure)(Plan& plan, Random& random);
   bool mixes = false;  ///< May be part of `mixed`.
   Worst worst = Worst::kPass;
-  /// The parameters that the nodes state, as `rubric check --state` takes it; legal only so.
+  /// The parameters that the nodes state, as `rubric check --state` takes it; lawful only so.
   std::string_view stated = {};
 };
 

@@ -85,7 +85,7 @@ void stated_busy_channel(Plan& plan, Random&) {
   plan.foreign_chats = false;
 }
 
-// Returns a variant that is legal only with these parameters stated.
+// Returns a variant that is lawful only with these parameters stated.
 Variant stated(std::string_view name, std::string_view summary, std::vector<int> decisions,
                Configure configure, std::string_view parameters) {
   return {name, summary, std::move(decisions), configure, false, Worst::kPass, parameters};

@@ -145,11 +145,11 @@ void World::record_event(AppEvent event) { traffic_.events.push_back(std::move(e
 
 void World::finish() {
   auto& packets = traffic_.packets;
-  const auto earlier = [](const LegalPacket& a, const LegalPacket& b) {
+  const auto earlier = [](const LawfulPacket& a, const LawfulPacket& b) {
     return a.time_us < b.time_us;
   };
   std::stable_sort(packets.begin(), packets.end(), earlier);
-  std::erase_if(packets, [this](const LegalPacket& packet) {
+  std::erase_if(packets, [this](const LawfulPacket& packet) {
     return packet.time_us < plan_.capture_from_us || packet.time_us > plan_.end_us;
   });
   traffic_.sniffer_complete = plan_.sniffer_misses_percent == 0;

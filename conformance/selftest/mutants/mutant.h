@@ -46,7 +46,7 @@ Mutants named_mutants();
 // Unusual nodes that keep every rule, in ways that the decisions allow: no golden trace may fail on
 // one.
 
-struct LegalVariant {
+struct LawfulVariant {
   std::string name;
   std::string reading;  ///< Its behaviour, and the decision that allows it.
   StepMaker step;
@@ -54,9 +54,9 @@ struct LegalVariant {
   trace::Statement stated = {};
 };
 
-std::vector<LegalVariant> legal_variants();
-/// Those that are legal since they state it.
-std::vector<LegalVariant> stated_variants();
+std::vector<LawfulVariant> lawful_variants();
+/// Those that are lawful since they state it.
+std::vector<LawfulVariant> stated_variants();
 
 /// Makes each frame wait for the channel before it leaves by radio, up to `most` ticks.
 StepMaker backing_off(std::uint32_t seed, Ticks most);

@@ -3,7 +3,8 @@
 // Each run of the suite goes through the judge as its log, which is whole (decision 24), and as a
 // capture, once with nothing known of the recorder and once with the truth: it began with the node
 // and missed nothing.
-// - A run that the suite finds in order is not blamed: no legal variant, no shipped implementation;
+// - A run that the suite finds in order is not blamed: no lawful variant, no shipped
+// implementation;
 //   and a mutant only if the suite fails it in some case, since a case looks at what it is about.
 // - What an application asked for and what left in its place is before the eyes of both in a log:
 //   such a run is not in order for the judge either (T1-WRAP, S2-CONTENT).
@@ -259,7 +260,7 @@ suite::CaseRun run_one(const suite::SuiteCase& one, targets::Attachment& attachm
   return suite::run_one(one, attachment, "", std::nullopt);
 }
 
-void expect_conforms(const LegalVariant& variant) {
+void expect_conforms(const LawfulVariant& variant) {
   suite::testing::FakeAttachment attachment = attached(variant.step, variant.stated);
   Opinions all;
   for (const suite::SuiteCase& one : cases().all()) {
@@ -270,9 +271,9 @@ void expect_conforms(const LegalVariant& variant) {
   EXPECT_GT(all.runs, cases().all().size() * 9 / 10);
 }
 
-TEST(TwoTools, NoRunOfALegalVariantIsBlamed) {
-  for (const auto& variants : {legal_variants(), stated_variants()}) {
-    for (const LegalVariant& variant : variants) expect_conforms(variant);
+TEST(TwoTools, NoRunOfALawfulVariantIsBlamed) {
+  for (const auto& variants : {lawful_variants(), stated_variants()}) {
+    for (const LawfulVariant& variant : variants) expect_conforms(variant);
   }
 }
 

@@ -25,11 +25,11 @@ Player machine() {
   return player([] { return std::make_unique<runner::Machine>(); });
 }
 
-// The machine and its legal variants.
+// The machine and its lawful variants.
 const std::vector<Player>& references() {
   static const std::vector<Player> all = [] {
     std::vector<Player> out = {machine()};
-    for (const mutants::LegalVariant& one : mutants::legal_variants()) {
+    for (const mutants::LawfulVariant& one : mutants::lawful_variants()) {
       out.push_back(player(mutants::wrapped(one.step)));
     }
     return out;
@@ -98,7 +98,7 @@ mutants::Mutants join_mutants() {
 }
 
 // For every named mutant of the join, its first failing case shrinks to one that still fails alike,
-// that the machine and its legal variants pass, and of which no line can be dropped.
+// that the machine and its lawful variants pass, and of which no line can be dropped.
 TEST(Shrink, FailuresOfMutants) {
   std::size_t before = 0;
   std::size_t after = 0;
@@ -137,7 +137,7 @@ TEST(Shrink, FailuresOfMutants) {
 }
 
 // Where a shorter trace could ask for more than the rules do: with two sinks, or with a full
-// buffer, what is left still holds the reference machine and all its legal variants harmless.
+// buffer, what is left still holds the reference machine and all its lawful variants harmless.
 TEST(Shrink, DoesNotDriftIntoWhatDecisionsAllow) {
   for (const char* const name : {"two_sinks", "n2.mote_incoming_full", "n2.sink_incoming_full"}) {
     const trace::File* file = nullptr;

@@ -26,7 +26,7 @@ struct NamedPace {
   const char* name;
   Pace pace;
 };
-const NamedPace kLegalPaces[] = {
+const NamedPace kLawfulPaces[] = {
     {"prompt", {}},
     {"slow", {230, 0, {}}},    // Of 300 ticks.
     {"bursty", {0, 200, {}}},  // Together, after up to 200 ticks.
@@ -134,7 +134,7 @@ void add(std::vector<Attempt>& attempts, const char* kind, const char* role, Mak
     if (overacks) {
       for (const NamedPace& one : kOverackingPaces) add_one(one);
     } else {
-      for (const NamedPace& one : kLegalPaces) add_one(one);
+      for (const NamedPace& one : kLawfulPaces) add_one(one);
     }
   }
 }
@@ -200,7 +200,7 @@ TEST(Live, AdaptersInRealTime) {
           return run_all(*attach(adapter(pace, overacks ? "overacking" : "none"), kPatient), cases);
         });
   }
-  for (const NamedPace& one : kLegalPaces) {
+  for (const NamedPace& one : kLawfulPaces) {
     for (const bool wrong : {false, true}) {
       const std::vector<Expected> cases = {
           {"j4.wrong_seq", wrong ? Rules{"J4-SEQ", "J4-ACK"} : Rules{}}};

@@ -21,7 +21,7 @@
 
 namespace rubric::targets {
 
-/// How a node behaves in time. Up to 300 ticks in all are legal (decision 125).
+/// How a node behaves in time. Up to 300 ticks in all are lawful (decision 125).
 struct Pace {
   runner::Ticks late = 0;        ///< Its outputs leave so much later,
   runner::Ticks burst = 0;       ///< and together at multiples of this; 0: each by itself.

@@ -57,7 +57,7 @@ std::uint16_t Seen::acked() const {
 
 Frames see(const Traffic& traffic) {
   Frames out;
-  for (const LegalPacket& packet : traffic.packets) {
+  for (const LawfulPacket& packet : traffic.packets) {
     Seen seen;
     seen.time_us = packet.time_us;
     seen.interface = packet.interface;

@@ -40,7 +40,7 @@ void for_each_traffic(const std::function<void(const Traffic&)>& check) {
   }
 }
 
-TEST(Legal, SameSeedSameTraffic) {
+TEST(Lawful, SameSeedSameTraffic) {
   for (const char* name : {"usual", "inter_island_true", "mixed", "lossy"}) {
     const Traffic once = generate(name, 7);
     EXPECT_EQ(once.packets, generate(name, 7).packets) << name;
@@ -49,7 +49,7 @@ TEST(Legal, SameSeedSameTraffic) {
   }
 }
 
-TEST(Legal, KnownBytes) {
+TEST(Lawful, KnownBytes) {
   // The same with every compiler and library. When the generator changes on purpose, copy the
   // number that this prints.
   std::uint64_t sum = 14695981039346656037u;
@@ -63,11 +63,11 @@ TEST(Legal, KnownBytes) {
   EXPECT_EQ(sum, 14117397480500743833u);
 }
 
-TEST(Legal, UnknownNameIsRefused) {
+TEST(Lawful, UnknownNameIsRefused) {
   EXPECT_THROW(generate("no_such_variant", 1), std::invalid_argument);
 }
 
-TEST(Legal, EachVariantShowsItsFeature) {
+TEST(Lawful, EachVariantShowsItsFeature) {
   std::set<std::string> checked;
   for (const auto* group : {&join_features(), &transport_features(), &other_features()}) {
     for (const Feature& feature : *group) {
@@ -84,7 +84,7 @@ TEST(Legal, EachVariantShowsItsFeature) {
   EXPECT_GE(all.size(), 26u);
 }
 
-TEST(Legal, FeaturesAreNotInCommonTraffic) {
+TEST(Lawful, FeaturesAreNotInCommonTraffic) {
   // A feature that any traffic shows would prove nothing; those of the defaults are listed.
   const std::set<std::string> common{"usual", "ack_deployed", "seq_random", "serial_whole"};
   // These are about retries or channels, which common traffic may not have at all.
@@ -117,7 +117,7 @@ std::set<int> decisions() {
   return numbers;
 }
 
-TEST(Legal, EveryDecisionHasAVariantOrAReason) {
+TEST(Lawful, EveryDecisionHasAVariantOrAReason) {
   std::set<int> covered;
   for (const Variant& variant : variants()) {
     covered.insert(variant.decisions.begin(), variant.decisions.end());
@@ -133,12 +133,12 @@ TEST(Legal, EveryDecisionHasAVariantOrAReason) {
   EXPECT_THAT(readme(), ::testing::HasSubstr(sentence));
 }
 
-TEST(Legal, NamesAreUnique) {
+TEST(Lawful, NamesAreUnique) {
   std::set<std::string_view> names;
   for (const Variant& variant : variants()) EXPECT_TRUE(names.insert(variant.name).second);
 }
 
-TEST(Legal, EveryFrameParses) {
+TEST(Lawful, EveryFrameParses) {
   const reflect::FrameDecoder decoder(*reflect::find_protocol("rubicon"));
   for_each_traffic([&](const Traffic& traffic) {
     std::size_t packets = 0;
@@ -167,7 +167,7 @@ TEST(Legal, EveryFrameParses) {
   });
 }
 
-TEST(Legal, ChecksTheRulesThatAreEasyToCheck) {
+TEST(Lawful, ChecksTheRulesThatAreEasyToCheck) {
   for_each_traffic([](const Traffic& traffic) {
     std::set<std::uint16_t> testers;
     for (const NodeInfo& node : traffic.nodes) {
@@ -202,7 +202,7 @@ TEST(Legal, ChecksTheRulesThatAreEasyToCheck) {
   });
 }
 
-TEST(Legal, AnswersComeInTime) {
+TEST(Lawful, AnswersComeInTime) {
   for_each_traffic([](const Traffic& traffic) {
     std::map<std::pair<std::uint16_t, std::uint16_t>, std::int64_t> asked;
     std::map<std::tuple<std::uint16_t, std::uint16_t, std::uint16_t>, std::int64_t> sent;
@@ -229,9 +229,9 @@ TEST(Legal, AnswersComeInTime) {
   });
 }
 
-TEST(Legal, TruthNamesTheNodes) {
+TEST(Lawful, TruthNamesTheNodes) {
   const std::string json = to_truth_json(generate("three_islands", 1));
-  EXPECT_THAT(json, ::testing::HasSubstr("\"schema\": \"rubric.legal/1\""));
+  EXPECT_THAT(json, ::testing::HasSubstr("\"schema\": \"rubric.lawful/1\""));
   EXPECT_THAT(json,
               ::testing::HasSubstr("{\"node\": 101, \"role\": \"sink\", \"id\": 1, \"island\": 12, "
                                    "\"interface\": \"serial:101\"}"));

@@ -1,4 +1,4 @@
-// Legal traffic, recorded by several clocks: nothing fails, whatever they show.
+// Lawful traffic, recorded by several clocks: nothing fails, whatever they show.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -48,7 +48,7 @@ void judge_apart(const std::string& variant, std::uint64_t seed, Count& count) {
   }
 }
 
-TEST(AlignLegal, NothingFails) {
+TEST(AlignLawful, NothingFails) {
   Count count;
   for (const lawful::Variant& variant : lawful::variants()) {
     for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {

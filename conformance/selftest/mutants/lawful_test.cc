@@ -1,4 +1,4 @@
-// No golden trace fails on a legal variant of the machine.
+// No golden trace fails on a lawful variant of the machine.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,18 +14,18 @@
 namespace rubric::mutants {
 namespace {
 
-std::vector<LegalVariant> all_variants() {
-  std::vector<LegalVariant> all = legal_variants();
-  for (LegalVariant& one : stated_variants()) all.push_back(std::move(one));
+std::vector<LawfulVariant> all_variants() {
+  std::vector<LawfulVariant> all = lawful_variants();
+  for (LawfulVariant& one : stated_variants()) all.push_back(std::move(one));
   return all;
 }
 
-TEST(Legal, NoGoldenTraceFails) {
+TEST(Lawful, NoGoldenTraceFails) {
   const Golden golden("conformance/cases");
-  const std::vector<LegalVariant> variants = all_variants();
+  const std::vector<LawfulVariant> variants = all_variants();
   std::set<std::string> names;
   std::size_t weak = 0;
-  for (const LegalVariant& variant : variants) {
+  for (const LawfulVariant& variant : variants) {
     EXPECT_TRUE(names.insert(variant.name).second) << variant.name;
     for (const CaseRef& ref : golden.cases()) {
       const auto result = run(ref, wrapped(variant.step), variant.stated);
@@ -37,15 +37,15 @@ TEST(Legal, NoGoldenTraceFails) {
                            << runner::explain(result, ref.file->file_name);
     }
   }
-  EXPECT_EQ(variants.size(), readme_number("# unusual but legal"));
-  std::printf("legal variants: %zu, golden traces: %zu, weak: %zu, failed: 0\n", variants.size(),
+  EXPECT_EQ(variants.size(), readme_number("# unusual but lawful"));
+  std::printf("lawful variants: %zu, golden traces: %zu, weak: %zu, failed: 0\n", variants.size(),
               golden.cases().size(), weak);
 }
 
 // Each one differs from the machine somewhere, as it should.
-TEST(Legal, EachDiffersFromTheMachine) {
+TEST(Lawful, EachDiffersFromTheMachine) {
   const Golden golden("conformance/cases");
-  for (const LegalVariant& variant : all_variants()) {
+  for (const LawfulVariant& variant : all_variants()) {
     bool differs = false;
     for (const CaseRef& ref : golden.cases()) {
       const auto machine = run(ref, [] { return std::make_unique<runner::Machine>(); });
@@ -58,7 +58,7 @@ TEST(Legal, EachDiffersFromTheMachine) {
 }
 
 // Adds a back-off of 0.3 to 10 ms before each frame, in many ways.
-TEST(Legal, BackOffFailsNoTrace) {
+TEST(Lawful, BackOffFailsNoTrace) {
   const Golden golden("conformance/cases");
   for (std::uint32_t seed = 0; seed < 40; ++seed) {
     for (const CaseRef& ref : golden.cases()) {
@@ -82,7 +82,7 @@ trace::Statement random_statement(std::minstd_rand& random) {
   return out;
 }
 
-TEST(Legal, NothingThatIsStatedFailsATrace) {
+TEST(Lawful, NothingThatIsStatedFailsATrace) {
   const Golden golden("conformance/cases");
   std::minstd_rand random(1);
   std::size_t tried = 0;
@@ -124,9 +124,9 @@ std::size_t failures(const Golden& golden, const runner::SubjectFactory& make,
 }
 
 // One that states a parameter and keeps the default, or the other way round, is found.
-TEST(Legal, WhatIsStatedMustBeKept) {
+TEST(Lawful, WhatIsStatedMustBeKept) {
   const Golden golden("conformance/cases");
-  for (const LegalVariant& variant : stated_variants()) {
+  for (const LawfulVariant& variant : stated_variants()) {
     const trace::ParameterId id = variant.stated.front().id;
     const trace::Statement nothing;
     if (id == trace::ParameterId::kResponse) continue;
@@ -140,7 +140,7 @@ TEST(Legal, WhatIsStatedMustBeKept) {
     EXPECT_GT(failures(golden, keeps(nothing), variant.stated), 0U) << variant.name << " stated";
     EXPECT_GT(failures(golden, keeps(variant.stated), nothing), 0U) << variant.name << " kept";
   }
-  for (const LegalVariant& variant : legal_variants()) {
+  for (const LawfulVariant& variant : lawful_variants()) {
     if (variant.name != "slow_250") continue;
     EXPECT_EQ(failures(golden, wrapped(variant.step), {}), 0U);
     EXPECT_GT(failures(golden, wrapped(variant.step), {{trace::ParameterId::kResponse, 100}}), 50U);

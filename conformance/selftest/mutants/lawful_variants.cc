@@ -8,7 +8,7 @@
 namespace rubric::mutants {
 namespace {
 
-using Variants = std::vector<LegalVariant>;
+using Variants = std::vector<LawfulVariant>;
 using machine::Joined;
 using machine::Received;
 using trace::ParameterId;
@@ -343,7 +343,7 @@ StepMaker late_and_backing_off(Ticks ticks, Ticks most) {
 
 }  // namespace
 
-std::vector<LegalVariant> legal_variants() {
+std::vector<LawfulVariant> lawful_variants() {
   Variants out;
   add_times(out);
   add_joins(out);
@@ -371,9 +371,9 @@ StepMaker backing_off(std::uint32_t seed, Ticks most) {
   };
 }
 
-std::vector<LegalVariant> stated_variants() {
+std::vector<LawfulVariant> stated_variants() {
   const auto is_reply = [](const Frame& frame) { return frame.type == am::kJoinReply; };
-  std::vector<LegalVariant> out;
+  std::vector<LawfulVariant> out;
   const auto add = [&](std::string name, std::string reading, StepMaker step,
                        trace::Statement stated, bool weak = false) {
     out.push_back({std::move(name), std::move(reading), std::move(step), weak, std::move(stated)});

@@ -1,4 +1,4 @@
-// Legal traffic, made by a generator that knows the rules and not this checker: nothing may fail.
+// Lawful traffic, made by a generator that knows the rules and not this checker: nothing may fail.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -53,7 +53,7 @@ void judge_both(const std::string& variant, std::uint64_t seed, const std::strin
   judge_one(traffic, recorder, options_of_whole(traffic), count);
 }
 
-TEST(Legal, NothingFails) {
+TEST(Lawful, NothingFails) {
   Count count;
   for (const lawful::Variant& variant : lawful::variants()) {
     for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
@@ -63,7 +63,7 @@ TEST(Legal, NothingFails) {
   const std::uint64_t variants = lawful::variants().size();
   for (std::uint64_t seed = 1; seed <= kMixedSeeds; ++seed)
     judge_both("mixed", seed, "exact", count);
-  std::printf("%llu legal variants, %llu judgements of %zu frames, %llu false alarms\n",
+  std::printf("%llu lawful variants, %llu judgements of %zu frames, %llu false alarms\n",
               static_cast<unsigned long long>(variants),
               static_cast<unsigned long long>(count.judgements), count.frames.size(),
               static_cast<unsigned long long>(count.fails));
@@ -72,7 +72,7 @@ TEST(Legal, NothingFails) {
 }
 
 // Each of these raised a false alarm once.
-TEST(Legal, NoAlarmComesBack) {
+TEST(Lawful, NoAlarmComesBack) {
   struct Alarm {
     const char* variant;
     std::uint64_t seed;
@@ -114,8 +114,8 @@ TEST(Legal, NoAlarmComesBack) {
   for (const Alarm& one : kAlarms) judge_both(one.variant, one.seed, one.recorder, count);
 }
 
-// Traffic that is legal only by what its nodes state fails when they state nothing.
-TEST(Legal, UnstatedItFails) {
+// Traffic that is lawful only by what its nodes state fails when they state nothing.
+TEST(Lawful, UnstatedItFails) {
   for (const char* name : {"stated_join_timer", "stated_requests", "stated_busy_channel"}) {
     std::size_t fails = 0;
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
@@ -158,7 +158,7 @@ TEST_P(Recorded, NothingFails) {
               static_cast<unsigned long long>(count.fails));
 }
 
-INSTANTIATE_TEST_SUITE_P(Legal, Recorded, testing::ValuesIn(lawful::recorders()),
+INSTANTIATE_TEST_SUITE_P(Lawful, Recorded, testing::ValuesIn(lawful::recorders()),
                          [](const auto& one) { return std::string(one.param.name); });
 
 }  // namespace
