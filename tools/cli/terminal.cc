@@ -11,6 +11,7 @@
 namespace rubric::cli {
 namespace {
 
+constexpr std::size_t kColumnsMin = 60;
 constexpr std::size_t kColumnsMax = 120;
 constexpr std::size_t kColumnsDefault = 100;
 constexpr std::size_t kRowsMin = 10;
@@ -22,6 +23,13 @@ void say_what_is_awaited() {
   static bool said = false;
   if (::isatty(STDIN_FILENO) == 0 || std::exchange(said, true)) return;
   text::print(stderr, "rubric: reads what is typed here; Ctrl-D on a line of its own ends it\n");
+}
+
+void add_width_option(Command& command, std::size_t& asked) {
+  command
+      .add_option("--width", asked,
+                  "Wrap text at this many columns (default: the terminal's, else 100)")
+      .between(kColumnsMin, std::size_t{1000});
 }
 
 std::size_t columns(std::size_t asked, int fd) {

@@ -3,13 +3,15 @@
 
 #include <cstddef>
 
+#include "tools/cli/command.h"
+
 namespace rubric::cli {
 
 /// Says once that stdin is read, where it is a terminal: before a command reads it.
 void say_what_is_awaited();
 
-constexpr std::size_t kColumnsMin = 60;
-
+/// Adds --width for what columns() is asked.
+void add_width_option(Command& command, std::size_t& asked);
 /// Returns `asked` if it is not 0; else the width of the terminal that `fd` is, between 60 and 120;
 /// else 100.
 std::size_t columns(std::size_t asked, int fd);

@@ -176,9 +176,7 @@ void add_chart(cli::Command& app) {
   sub.add_option("--target", options->target,
                  "Draw what this implementation does instead, as rubric test has it");
   sub.add_option("-o,--out", options->out, "Write to this file; - is stdout");
-  sub.add_option("--width", options->width,
-                 "Wrap text at this many columns (default: the terminal's, else 100)")
-      .between(60, 1000);
+  cli::add_width_option(sub, options->width);
   sub.callback([options] { run_chart(*options); });
 }
 

@@ -273,10 +273,7 @@ void add_options(cli::Command& command, CheckOptions& options) {
       .add_option("--max-findings", options.findings_max,
                   "Print at most this many findings of a rule in full, and count the others")
       .check(cli::whole_number);
-  command
-      .add_option("--width", options.width,
-                  "Wrap text at this many columns (default: the terminal's, else 100)")
-      .between(cli::kColumnsMin, std::size_t{1000});
+  cli::add_width_option(command, options.width);
   cli::add_color_option(command, options.color);
   for (const char* name : {"--node", "--sink", "--tester", "--frames"}) {
     command.get_option(name).one_at_a_time();  // One at a time: files may follow.

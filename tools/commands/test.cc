@@ -414,10 +414,7 @@ void add_options(cli::Command& command, TestOptions& options) {
                      "Say which verdicts have changed since this report.json");
   command.add_flag("--quiet", options.quiet, "Print no lines for cases that are as expected");
   command.add_flag("--verbose", options.verbose, "Print every failure in full");
-  command
-      .add_option("--width", options.width,
-                  "Wrap text at this many columns (default: the terminal's, else 100)")
-      .between(cli::kColumnsMin, std::size_t{1000});
+  cli::add_width_option(command, options.width);
   cli::add_color_option(command, options.color);
   for (const char* name : {"--target", "--cases", "--except", "--rule"}) {
     command.get_option(name).repeatable();  // Traces may follow.

@@ -227,8 +227,9 @@ class Generate(Folder):
 
     def test_what_makes_no_sense_is_refused(self):
         target = str(self.folder / "x")
-        for share in ("1.2", "-0.1", "nan", "much", ""):
+        for share in ("1.2", "-0.1", "nan", "much"):
             self.assert_refused("expected a share from 0 to 1", "--valid", share)
+        self.assert_refused("--valid: is empty", "--valid", "")
         self.assert_refused("--count", "--count", "0")
         self.assert_refused("--seed", "--seed", "-1")
         self.assert_refused("--format", "--format", "pcap")
