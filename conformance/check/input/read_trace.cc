@@ -55,7 +55,7 @@ class LogReader {
     }
     run_.marked = run_.marked || marked;
     whole_ = std::ranges::any_of(scope_.nodes, &trace::NodeHeader::whole);
-    for (std::size_t i = 0; i < run_.nodes.size(); ++i) by_name_[run_.nodes[i].name].push_back(i);
+    for (std::size_t i = 0; i < run_.nodes.size(); ++i) index(i);
     trace::each_line(text, [&](const Line& line) {
       note(line);
       take(line);
@@ -85,6 +85,15 @@ class LogReader {
     static const std::vector<std::size_t> none;
     const auto found = by_name_.find(name);
     return found == by_name_.end() ? none : found->second;
+  }
+
+  // Another log of a node may have begun what this one ends.
+  void index(std::size_t i) {
+    const LoggedNode& node = run_.nodes[i];
+    by_name_[node.name].push_back(i);
+    for (std::size_t at = 0; at < node.busy.size(); ++at) {
+      if (node.busy[at].to_us == INT64_MAX) busy_[{i, node.busy[at].line}] = at;
+    }
   }
 
   // Notes what the log has of the line's node.
