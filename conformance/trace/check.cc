@@ -10,7 +10,10 @@
 #include "codec/reflect/requirements.h"
 #include "codec/reflect/suggest.h"
 #include "conformance/trace/concrete.h"
+#include "conformance/trace/each_line.h"
 #include "conformance/trace/encode.h"
+#include "conformance/trace/ends.h"
+#include "conformance/trace/headers.h"
 #include "conformance/trace/match.h"
 #include "conformance/trace/print.h"
 #include "conformance/trace/protocol.h"
@@ -314,21 +317,52 @@ const std::unordered_set<std::string>& known_requirements() {
   return known;
 }
 
-class FileCheck {
+class FileCheck : public Listener {
  public:
   FileCheck(const File& file, const Report& report) : file_(file), report_(report) {}
 
   void run() {
-    head();
-    std::unordered_map<std::string, Place> names;
     for (const Case& one : file_.cases) {
-      const auto [at, fresh] = names.emplace(one.name, one.place);
-      if (!fresh) {
-        report_(one.place, "case " + quoted(one.name) + " is already in line " +
-                               std::to_string(at->second.line));
+      begin(one);
+      for (const Item& item : one.items) {
+        if (const auto* its = item.as<Header>()) header(*its);
+        if (const auto* its = item.as<Line>()) line(*its);
       }
-      check_case(one);
     }
+    finish();
+  }
+
+  void begin(const Case& one) override {
+    finish();
+    now_.emplace().one = &one;
+    const auto [at, fresh] = names_.emplace(one.name, one.place);
+    if (!fresh) {
+      report_(one.place, "case " + quoted(one.name) + " is already in line " +
+                             std::to_string(at->second.line));
+    }
+  }
+
+  void header(const Header& one) override {
+    if (std::holds_alternative<VersionHeader>(one.what) ||
+        std::holds_alternative<TickHeader>(one.what)) {
+      report_(one.place, "%rtr and %tick come before the first case");
+    } else if (now_->lines && !std::holds_alternative<NoteHeader>(one.what)) {
+      report_(one.place, "the headers of a case come before its lines");
+    }
+    check_header(one, now_->said);
+  }
+
+  void line(const Line& one) override {
+    now_->lines = true;
+    check_time(one, now_->labels, now_->latest);
+    check_line(one, ends(), now_->bound);
+  }
+
+  /// Ends the case, or the head if none has begun.
+  void finish() {
+    if (!std::exchange(headed_, true)) head();
+    if (now_) link_nodes(now_->one->items, ends());
+    now_.reset();
   }
 
  private:
@@ -355,7 +389,8 @@ class FileCheck {
       check_header(*header, said);
     }
     if (!said.version && !first_) report_({1, 1}, "expected %rtr 1 at the beginning");
-    link_nodes(file_.head, scope_of(file_, {}));
+    of_head_.emplace(file_, Case());
+    link_nodes(file_.head, *of_head_);
   }
 
   void check_header(const Header& header, Said& said) {
@@ -398,47 +433,18 @@ class FileCheck {
     }
   }
 
-  void link_nodes(const std::vector<Item>& items, const Scope& scope) {
+  void link_nodes(const std::vector<Item>& items, const Ends& ends) {
     for (const Item& item : items) {
       const auto* header = item.as<Header>();
       const auto* link = header ? std::get_if<LinkHeader>(&header->what) : nullptr;
       if (!link) continue;
       for (const std::string& node : link->nodes) {
-        if (!scope.node(node)) {
+        if (!ends.node(node)) {
           report_(header->place,
                   "no %node " + quoted(node) + ", which %link " + link->name + " names");
         }
       }
     }
-  }
-
-  void check_case(const Case& one) {
-    Said said;
-    const Scope scope = scope_of(file_, one);
-    std::unordered_map<std::string, Place> labels;
-    BoundNames bound{kSeeded};
-    bool lines = false;
-    std::int64_t latest = 0;
-    for (const Item& item : one.items) {
-      if (const auto* header = item.as<Header>()) {
-        case_header(*header, lines, said);
-      } else if (const auto* line = item.as<Line>()) {
-        lines = true;
-        check_time(*line, labels, latest);
-        check_line(*line, scope, bound);
-      }
-    }
-    link_nodes(one.items, scope);
-  }
-
-  void case_header(const Header& header, bool lines, Said& said) {
-    if (std::holds_alternative<VersionHeader>(header.what) ||
-        std::holds_alternative<TickHeader>(header.what)) {
-      report_(header.place, "%rtr and %tick come before the first case");
-    } else if (lines && !std::holds_alternative<NoteHeader>(header.what)) {
-      report_(header.place, "the headers of a case come before its lines");
-    }
-    check_header(header, said);
   }
 
   void check_time(const Line& line, std::unordered_map<std::string, Place>& labels,
@@ -474,32 +480,32 @@ class FileCheck {
     }
   }
 
-  void check_line(const Line& line, const Scope& scope, BoundNames& bound) {
+  void check_line(const Line& line, const Ends& ends, BoundNames& bound) {
     for (const std::string& one : line.requirements) {
       if (!known_requirements().contains(one)) {
         report_(line.place, "no requirement " + quoted(one) + " in the catalogue");
       }
     }
-    const std::optional<LinkKind> link = scope.link(line.link);
+    const std::optional<LinkKind> link = ends.link(line.link);
     if (!link) {
       report_(line.place, "unknown link " + quoted(line.link) +
                               ": r... is a radio, ser... a serial line, else peis, app, power or "
                               "what %link names");
       return;
     }
-    if (!is_fault(line.op)) check_ends(line, *link, scope);
+    if (!is_fault(line.op)) check_ends(line, *link, ends);
     if (line.op == Op::kGiven && *link == LinkKind::kAny) {
       report_(line.place, "'*' says nothing of the link by which it is given");
     }
     check_message(line, *link, bound, report_);
   }
 
-  void check_ends(const Line& line, LinkKind link, const Scope& scope) {
+  void check_ends(const Line& line, LinkKind link, const Ends& ends) {
     if (line.node == "*") {
       if (line.op == Op::kGiven) report_(line.place, "'*' says nothing of who is given it");
       return;
     }
-    const NodeHeader* node = scope.node(line.node);
+    const NodeHeader* node = ends.node(line.node);
     if (!node) return report_(line.place, "no %node " + quoted(line.node));
     const RoleInfo& role = role_info(node->role);
     const bool has = link == LinkKind::kApp || link == LinkKind::kPower || link == LinkKind::kAny ||
@@ -510,16 +516,37 @@ class FileCheck {
       report_(line.place, "a " + std::string(role_text(node->role)) + " is not on " +
                               quoted(line.link) + ", which is " + std::string(link_text(link)));
     }
-    for (const LinkHeader& one : scope.links) {
-      if (one.name == line.link && !one.nodes.empty() &&
-          std::find(one.nodes.begin(), one.nodes.end(), line.node) == one.nodes.end()) {
-        report_(line.place, quoted(line.node) + " is not on the link " + quoted(line.link));
-      }
+    if (!ends.is_on(line.node, line.link)) {
+      report_(line.place, quoted(line.node) + " is not on the link " + quoted(line.link));
     }
+  }
+
+  // The case that is read.
+  struct Now {
+    const Case* one = nullptr;
+    Said said;
+    bool lines = false;
+    const Ends* ends = nullptr;  // Once they were asked for.
+    std::optional<Ends> own;     // Unless those of the head are its.
+    std::unordered_map<std::string, Place> labels;
+    BoundNames bound{kSeeded};
+    std::int64_t latest = 0;
+  };
+
+  const Ends& ends() {
+    if (now_->ends) return *now_->ends;
+    const std::vector<Item>& items = now_->one->items;
+    const bool own = states<NodeHeader>(items) || states<LinkHeader>(items);
+    now_->ends = own ? &now_->own.emplace(file_, *now_->one) : &*of_head_;
+    return *now_->ends;
   }
 
   const File& file_;
   const Report& report_;
+  std::optional<Ends> of_head_;
+  std::unordered_map<std::string, Place> names_;
+  std::optional<Now> now_;
+  bool headed_ = false;
   bool first_ = false;
 };
 
@@ -538,6 +565,15 @@ void check(Parsed& parsed) {
     add_diagnostic(parsed, place, std::move(text));
   };
   FileCheck(parsed.file, report).run();
+}
+
+void check_as_read(Parsed& parsed, const std::function<void(Listener&)>& read) {
+  const Report report = [&](Place place, std::string text) {
+    add_diagnostic(parsed, place, std::move(text));
+  };
+  FileCheck checker(parsed.file, report);
+  read(checker);
+  checker.finish();
 }
 
 std::vector<Diagnostic> check(const File& file) {

@@ -6,6 +6,7 @@
 
 #include "codec/text/text.h"
 #include "conformance/trace/check.h"
+#include "conformance/trace/each_line.h"
 #include "conformance/trace/parse_line.h"
 #include "conformance/trace/protocol.h"
 #include "conformance/trace/scanner.h"
@@ -148,7 +149,7 @@ void parse_what(Scanner& in, Header& header) {
 }
 
 /// Parses one or more headers in a line.
-void parse_headers(Scanner& in, std::vector<Item>& out) {
+void add_headers(Scanner& in, std::vector<Item>& out) {
   do {
     Header header{.place = in.place()};
     parse_what(in, header);
@@ -174,12 +175,13 @@ std::size_t find_foreign(std::string_view text) {
 
 class Parser {
  public:
-  explicit Parser(Parsed& out) : out_(out) {}
+  /// Lines are told to `listener`, if there is one; else they are kept.
+  explicit Parser(Parsed& out, Listener* listener = nullptr) : out_(out), listener_(listener) {}
 
   void run(std::string_view text) {
     if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
     std::size_t cases = 0;
-    out_.file.head.reserve(items_until_case(text));
+    if (!listener_) out_.file.head.reserve(items_until_case(text));
     for (std::string_view rest = text; !rest.empty();) cases += is_case(take_line(rest));
     out_.file.cases.reserve(cases);
     std::uint32_t number = 0;
@@ -248,6 +250,7 @@ class Parser {
   void content(Scanner& in, std::string_view line) {
     std::vector<Item>& items =
         out_.file.cases.empty() ? out_.file.head : out_.file.cases.back().items;
+    if (listener_ && (in.at_end() || in.peek() == '#' || in.peek() == ';')) return;
     if (in.at_end()) {
       Blank* const before = items.empty() ? nullptr : items.back().as<Blank>();
       if (before != nullptr) {
@@ -262,24 +265,57 @@ class Parser {
       comment.text = text;
       items.emplace_back(std::move(comment));
     } else if (in.peek() == '%') {
-      parse_headers(in, items);
+      const std::size_t before = items.size();
+      add_headers(in, items);
+      if (listener_ && !out_.file.cases.empty()) tell_headers(items, before);
     } else if (in.rest().starts_with("case ") || in.rest().starts_with("case\t") ||
                in.rest() == "case") {
       in.advance(4);
       out_.file.cases.push_back(parse_case(in));
+      if (listener_) return listener_->begin(out_.file.cases.back());
       out_.file.cases.back().items.reserve(items_until_case(rest_));
     } else {
       Line parsed = parse_line(in);
       if (out_.file.cases.empty()) {
         return fail(parsed.place, "a line before the first case; 'case NAME' begins one");
       }
+      if (listener_) return listener_->line(parsed);
       items.emplace_back(std::move(parsed));
     }
   }
 
+  // Tells of the headers that were added to a case, and keeps no notes.
+  void tell_headers(std::vector<Item>& items, std::size_t begin) {
+    for (std::size_t i = begin; i < items.size(); ++i) listener_->header(*items[i].as<Header>());
+    std::erase_if(items, [](const Item& item) {
+      return std::holds_alternative<NoteHeader>(item.as<Header>()->what);
+    });
+  }
+
   Parsed& out_;
+  Listener* listener_;
   std::string_view rest_;  // After the line that is read.
 };
+
+/// Gives each line to a function.
+class LineTaker : public Listener {
+ public:
+  explicit LineTaker(const std::function<void(const Line&)>& take) : take_(take) {}
+  void begin(const Case&) override {}
+  void header(const Header&) override {}
+  void line(const Line& one) override { take_(one); }
+
+ private:
+  const std::function<void(const Line&)>& take_;
+};
+
+void sort_diagnostics(Parsed& parsed) {
+  std::stable_sort(parsed.diagnostics.begin(), parsed.diagnostics.end(),
+                   [](const Diagnostic& a, const Diagnostic& b) {
+                     return a.place.line != b.place.line ? a.place.line < b.place.line
+                                                         : a.place.column < b.place.column;
+                   });
+}
 
 }  // namespace
 
@@ -305,12 +341,22 @@ Parsed parse_syntax(std::string_view text, std::string_view file_name) {
 Parsed parse(std::string_view text, std::string_view file_name) {
   Parsed parsed = parse_syntax(text, file_name);
   check(parsed);
-  std::stable_sort(parsed.diagnostics.begin(), parsed.diagnostics.end(),
-                   [](const Diagnostic& a, const Diagnostic& b) {
-                     return a.place.line != b.place.line ? a.place.line < b.place.line
-                                                         : a.place.column < b.place.column;
-                   });
+  sort_diagnostics(parsed);
   return parsed;
+}
+
+Parsed parse_headers(std::string_view text, std::string_view file_name) {
+  Parsed parsed;
+  parsed.file_name = file_name;
+  check_as_read(parsed, [&](Listener& checker) { Parser(parsed, &checker).run(text); });
+  sort_diagnostics(parsed);
+  return parsed;
+}
+
+void each_line(std::string_view text, const std::function<void(const Line&)>& take) {
+  Parsed parsed;
+  LineTaker taker(take);
+  Parser(parsed, &taker).run(text);
 }
 
 std::string parse_message(std::string_view text, Message& out) {

@@ -71,6 +71,40 @@ TEXTS = {
             f"{i * 1000} {REQUEST.format(1)} [{'J3-REPLY ' * 8}J4-SEQ]\n" for i in range(n)),
 }
 TEXT_COMMANDS = (("check",), ("test", "--target", "machine"), ("chart",))
+# What a log or a case may consist of: each kind of line, of which a file has any number.
+LINES = {
+    "busy lines": "0 sA < rA busy\n",
+    "lines that are busy and idle": "0 sA < rA busy\n0 sA < rA idle\n",
+    "busy lines of two links": "0 sA < serA busy\n0 sA < rA idle\n",
+    "new starts": "0 sA < power reboot\n",
+    "busy lines and new starts": "0 sA < app busy\n0 sA < power reboot\n",
+    "no power": "0 sA < power off\n",
+    "calls": "0 m5 < app get_clock()\n",
+    "link acks": "0 m5 < rA linkack(acked=1)\n",
+    "no link acks": "0 m5 < rA linkack(acked=0)\n",
+    "frames": "0 sA < rA am=5->1 am(type=1 payload=x)\n",
+    "packets": "0 sA < serA * | 00\n",
+    "frames in hex": "0 sA > rA * | 0000010002010006 03\n",
+    "what must not be": "0 sA !> * *\n",
+    "what may be": "0 sA ?> * *\n",
+    "what is at a time": "@0 sA > * *\n",
+    "what comes within terms": "0..members * > * *\n",
+    "faults": "0 rA lost *\n",
+    "comments of lines": "0 sA > * * ; c\n",
+    "lists": "0 sA > rA net_msg(payload.body.values=[1 2 3] ...)\n",
+    "notes": "%note x\n",
+}
+COUNTED = {
+    "labels": lambda i: f"a{i}: 0 sA > * *\n",
+    "times after labels": lambda i: f"a{i}: {f'a{i - 1}+' if i else ''}0 sA > * *\n",
+    "variables": lambda i: f"0 sA > rA join_reply(seq_num=$q{i} ...)\n",
+    "nodes": lambda i: f"%node n{i} mote id=5\n",
+    "links": lambda i: f"%link r{i} radio sA\n",
+    "cases with a line": lambda i: f"case a{i}\n0 sA > * *\n",
+}
+LINES_LEAST = 2000  # Of them; then tenfold.
+LINES_CPU_MOST = 3 * STEP
+LINES_CPU_FLOOR_S = 0.02
 MEMORY_MOST = 20  # Times the file's size.
 MEMORY_FLOOR = 2 << 20
 
@@ -98,7 +132,8 @@ def measure(command, path, codes=(0, 1, 3)):
 
 
 class Linear(Folder):
-    def grows(self, name, command, inputs, path, codes=(0, 1, 3)):
+    def grows(self, name, command, inputs, path, codes=(0, 1, 3), cpu_most=CPU_MOST,
+              cpu_floor_s=CPU_FLOOR_S):
         """Returns the memory for each of the inputs."""
         before = None
         memory = []
@@ -107,7 +142,7 @@ class Linear(Folder):
             size, cpu, most = measure(command, path, codes)
             if before:
                 self.assertLessEqual(size, BYTES_MOST * before[0] + 2000, (name, command))
-                self.assertLessEqual(cpu, CPU_MOST * max(before[1], CPU_FLOOR_S), (name, command))
+                self.assertLessEqual(cpu, cpu_most * max(before[1], cpu_floor_s), (name, command))
             before = size, cpu
             memory.append(most)
         return memory
@@ -128,6 +163,46 @@ class Linear(Folder):
                 if command == ("check",):  # It only reads.
                     self.assertLessEqual(memory[2] - memory[0],
                                          MEMORY_MOST * len(inputs[2]) + MEMORY_FLOOR, name)
+
+    def is_linear(self, name, shape):
+        path = self.folder / "x.rtr"
+        inputs = [shape(LINES_LEAST * STEP ** power).encode() for power in range(2)]
+        for command in TEXT_COMMANDS:
+            memory = self.grows(name, command, inputs, path, (0, 1, 2, 3, 64, 66), LINES_CPU_MOST,
+                                LINES_CPU_FLOOR_S)
+            if command == ("check",):
+                self.assertLessEqual(memory[1] - memory[0],
+                                     MEMORY_MOST * len(inputs[1]) + MEMORY_FLOOR, name)
+
+    def test_each_kind_of_line(self):
+        for name, line in LINES.items():
+            self.is_linear(name, lambda n: HEAD + "case c\n" + line * (n // line.count("\n")))
+
+    def test_each_kind_of_line_that_differs(self):
+        for name, line in COUNTED.items():
+            self.is_linear(name, lambda n: HEAD + "case c\n" + "".join(map(line, range(n))))
+
+    def test_many_nodes_and_links_with_lines(self):
+        self.is_linear("nodes with lines", lambda n: HEAD + "".join(
+            f"%node n{i} mote id=5\n" for i in range(n // 2)) + "case c\n" + "".join(
+                f"0 n{i} > rA *\n" for i in range(n // 2)))
+        self.is_linear("links with lines", lambda n: HEAD + "".join(
+            f"%link r{i} radio\n" for i in range(n // 2)) + "case c\n" + "".join(
+                f"0 sA > r{i} *\n" for i in range(n // 2)))
+
+    def test_a_cut_line(self):
+        self.is_linear("a cut line", lambda n: HEAD + "case c\n" + "0 sA > r *\n" * n + "0 sA >")
+
+    def test_bytes_as_text(self):
+        """Hex, which every command takes that takes captures."""
+        path = self.folder / "x.hex"
+        for name, line in (("packets", b"0 00ffff00050700430001000701\n"), ("nothing", b"\n"),
+                           ("half a byte", b"0 0\n"), ("no hex", b"x\n")):
+            inputs = [line * (LINES_LEAST * STEP ** power) for power in range(2)]
+            for command in (("check",), ("convert", "--input-format", "hex", "--format", "hdlc",
+                                         "-o", "-")):
+                self.grows(name, command, inputs, path, (0, 1, 3, 66), LINES_CPU_MOST,
+                           LINES_CPU_FLOOR_S)
 
     def test_lines(self):
         """What encodes, and what is encoded."""

@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <unordered_map>
 
 #include "conformance/check/storage.h"
+#include "conformance/trace/each_line.h"
 #include "conformance/trace/encode.h"
 #include "conformance/trace/events/lines.h"
-#include "conformance/trace/parse.h"
 #include "conformance/trace/print.h"
 
 namespace rubric::check {
@@ -29,12 +30,15 @@ machine::Role role_of(trace::Role role) {
 class LogReader {
  public:
   LogReader(const trace::File& file, const trace::Case& one, Run& run)
-      : run_(run), scope_(trace::scope_of(file, one)), lines_(one.lines()) {}
+      : run_(run), scope_(trace::scope_of(file, one)) {}
 
-  void read() {
-    bool marked = false;
-    bool applications = false;
-    for (const trace::NodeHeader& header : scope_.nodes) marked = marked || header.iut;
+  void read(std::string_view text) {
+    const bool marked = std::ranges::any_of(scope_.nodes, &trace::NodeHeader::iut);
+    trace::Statement stated;  // By those under test.
+    for (const trace::NodeHeader& header : scope_.nodes) {
+      if (header.iut) stated = joined(std::move(stated), header.stated);
+    }
+    first_ = run_.nodes.size();
     for (const trace::NodeHeader& header : scope_.nodes) {
       LoggedNode node;
       node.name = header.name;
@@ -45,45 +49,78 @@ class LogReader {
       node.under_test = !marked || header.iut;
       node.stated = header.stated;
       // Whom the trace plays is taken for the like of those under test, as the runner does.
-      for (const trace::NodeHeader& other : scope_.nodes) {
-        if (marked && !header.iut && other.iut) node.stated = joined(node.stated, other.stated);
-      }
-      for (const Line* line : lines_) {
-        if (line->node != header.name) continue;
-        const std::optional<LinkKind> link = scope_.link(line->link);
-        node.logged = true;
-        node.application = node.application || link == LinkKind::kApp;
-        node.hearing = node.hearing ||
-                       (hears_by(node.role, link) && line->op == Op::kGiven && !is_state(*line));
-        node.peis = node.peis || link == LinkKind::kPeis;
-      }
-      if (header.whole) {
-        node.whole = node.logged = node.application = node.hearing = true;
-        node.peis = header.role == trace::Role::kBaseStation;
-      }
+      if (!header.iut) node.stated = joined(std::move(node.stated), stated);
+      node.whole = header.whole;
       run_.nodes.push_back(std::move(node));
-      applications = applications || run_.nodes.back().application;
     }
     run_.marked = run_.marked || marked;
+    whole_ = std::ranges::any_of(scope_.nodes, &trace::NodeHeader::whole);
+    for (std::size_t i = 0; i < run_.nodes.size(); ++i) index(i);
+    trace::each_line(text, [&](const Line& line) {
+      note(line);
+      take(line);
+    });
+    bool applications = false;
+    for (std::size_t i = first_; i < run_.nodes.size(); ++i) {
+      LoggedNode& node = run_.nodes[i];
+      if (node.whole) {
+        node.logged = node.application = node.hearing = true;
+        node.peis = node.role == machine::Role::kBaseStation;
+      }
+      applications = applications || node.application;
+    }
     drop_others();
     // If a log has applications, a node with radio input has its application as well, even if that
     // was never called.
     for (LoggedNode& node : run_.nodes) {
       node.application = node.application || (applications && node.hearing);
     }
-    for (const Line* line : lines_) take(*line);
   }
 
  private:
+  using Busy = std::pair<std::size_t, std::optional<machine::Link>>;
+
+  // Returns the places in the run of the nodes of this name, also those of other logs.
+  const std::vector<std::size_t>& named(const std::string& name) const {
+    static const std::vector<std::size_t> none;
+    const auto found = by_name_.find(name);
+    return found == by_name_.end() ? none : found->second;
+  }
+
+  // Another log of a node may have begun what this one ends.
+  void index(std::size_t i) {
+    const LoggedNode& node = run_.nodes[i];
+    by_name_[node.name].push_back(i);
+    for (std::size_t at = 0; at < node.busy.size(); ++at) {
+      if (node.busy[at].to_us == INT64_MAX) busy_[{i, node.busy[at].line}] = at;
+    }
+  }
+
+  // Notes what the log has of the line's node.
+  void note(const Line& line) {
+    const std::optional<LinkKind> link = scope_.link(line.link);
+    for (const std::size_t i : named(line.node)) {
+      if (i < first_) continue;
+      LoggedNode& node = run_.nodes[i];
+      node.logged = true;
+      node.application = node.application || link == LinkKind::kApp;
+      node.hearing =
+          node.hearing || (hears_by(node.role, link) && line.op == Op::kGiven && !is_state(line));
+      node.peis = node.peis || link == LinkKind::kPeis;
+    }
+  }
+
   // A node that only a header names is that of the log which has lines of it, if there is one.
   void drop_others() {
     std::vector<LoggedNode> kept;
-    for (const LoggedNode& node : run_.nodes) {
-      const auto better = [&](const LoggedNode& other) {
-        const bool earlier = &other < &node && !node.logged;
-        return other.name == node.name && (other.logged > node.logged || earlier);
+    for (LoggedNode& node : run_.nodes) {
+      const auto better = [&](std::size_t i) {
+        const LoggedNode& other = run_.nodes[i];
+        return other.logged > node.logged || (&other < &node && !node.logged);
       };
-      if (std::ranges::none_of(run_.nodes, better)) kept.push_back(node);
+      if (std::ranges::none_of(named(node.name), better)) {
+        kept.push_back(std::move(node));
+      }
     }
     run_.nodes = std::move(kept);
   }
@@ -118,9 +155,7 @@ class LogReader {
 
   void take(const Line& line) {
     const std::int64_t time_us = time_of(line);
-    const bool watched =
-        line.op == Op::kMustNot && std::ranges::any_of(scope_.nodes, &trace::NodeHeader::whole);
-    if (watched && line.time.base == trace::Time::Base::kStart) {
+    if (whole_ && line.op == Op::kMustNot && line.time.base == trace::Time::Base::kStart) {
       run_.watched_until_us = std::max(run_.watched_until_us, us_of(line.time.to + 1));
     }
     if (line.op != Op::kGiven && line.op != Op::kEmits) return;
@@ -150,17 +185,21 @@ class LogReader {
     if ((!busy && line.message.name != "idle") || !kind) return;
     const std::optional<machine::Link> link = events::to_link(*kind);
     end_busy(line.node, link, time_us);
-    for (LoggedNode& node : run_.nodes) {
-      if (node.name == line.node && busy) node.busy.push_back({time_us, INT64_MAX, link});
+    if (!busy) return;
+    for (const std::size_t i : named(line.node)) {
+      std::vector<BusyTime>& its = run_.nodes[i].busy;
+      busy_[{i, link}] = its.size();
+      its.push_back({time_us, INT64_MAX, link});
     }
   }
 
   // Ends what is still busy of a node: a line, or its application.
-  void end_busy(std::string_view name, std::optional<machine::Link> line, std::int64_t time_us) {
-    for (LoggedNode& node : run_.nodes) {
-      for (BusyTime& one : node.busy) {
-        if (node.name == name && one.line == line) one.to_us = std::min(one.to_us, time_us);
-      }
+  void end_busy(const std::string& name, std::optional<machine::Link> line, std::int64_t time_us) {
+    for (const std::size_t i : named(name)) {
+      const auto since = busy_.find({i, line});
+      if (since == busy_.end()) continue;
+      run_.nodes[i].busy[since->second].to_us = time_us;
+      busy_.erase(since);
     }
   }
 
@@ -169,8 +208,8 @@ class LogReader {
       return field.path == "acked" && field.value.number == 1;
     };
     const bool fails = std::ranges::none_of(line.message.fields, acked);
-    for (LoggedNode& node : run_.nodes) {
-      if (node.name != line.node) continue;
+    for (const std::size_t i : named(line.node)) {
+      LoggedNode& node = run_.nodes[i];
       (fails ? node.link_failures_us : node.link_acks_us).push_back(time_us);
     }
   }
@@ -189,8 +228,10 @@ class LogReader {
     seen.frame.type = frame.type;
     seen.frame.payload = run_.storage->keep(Bytes(frame.payload.data(), frame.payload.size()));
     seen.tap = tap_of(line.link, seen.frame.link);
-    const trace::NodeHeader* const node = scope_.node(line.node);
-    const bool sink = node != nullptr && node->role == trace::Role::kSink;
+    const auto is_sink = [&](std::size_t i) {
+      return i >= first_ && run_.nodes[i].role == machine::Role::kSink;
+    };
+    const bool sink = std::ranges::any_of(named(line.node), is_sink);
     // The line was given to a sink, or sent by its host.
     if (kind == LinkKind::kSerial) seen.to_mote = sink == seen.received;
     run_.seen.push_back(seen);
@@ -233,7 +274,10 @@ class LogReader {
 
   Run& run_;
   trace::Scope scope_;
-  std::vector<const Line*> lines_;
+  std::size_t first_ = 0;  // Of the run's nodes: the log's first.
+  bool whole_ = false;     // A node of the log is.
+  std::unordered_map<std::string, std::vector<std::size_t>> by_name_;
+  std::map<Busy, std::size_t> busy_;  // By node and line: the place of what has not ended.
   std::map<std::string, std::int64_t> labels_;
   std::map<std::string, std::uint32_t> taps_;
   std::set<std::string> without_power_;
@@ -260,14 +304,17 @@ bool looks_like_trace(std::string_view bytes) {
 }
 
 bool read_trace(const std::string& name, std::string_view text, Run& run, std::string& error) {
-  trace::Parsed parsed = trace::parse(text, name);
+  trace::Parsed parsed = trace::parse_headers(text, name);
   const std::size_t last_line = text.rfind('\n') + 1;
   // Its writer may have been stopped within a line.
   if (!parsed.ok() && last_line != text.size()) {
-    trace::Parsed whole_lines = trace::parse(text.substr(0, last_line), name);
+    trace::Parsed whole_lines = trace::parse_headers(text.substr(0, last_line), name);
     const bool cut = whole_lines.ok() && !whole_lines.file.cases.empty();
     run.cut = run.cut || cut;
-    if (cut) parsed = std::move(whole_lines);
+    if (cut) {
+      parsed = std::move(whole_lines);
+      text = text.substr(0, last_line);
+    }
   }
   if (!parsed.ok()) {
     error = parsed.errors();
@@ -279,7 +326,7 @@ bool read_trace(const std::string& name, std::string_view text, Run& run, std::s
     return false;
   }
   try {
-    LogReader(parsed.file, parsed.file.cases.front(), run).read();
+    LogReader(parsed.file, parsed.file.cases.front(), run).read(text);
   } catch (const trace::TraceError& broken) {
     error = name + ":" + std::to_string(broken.place().line) + ": " + broken.what();
     return false;

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "conformance/trace/each_line.h"
 #include "conformance/trace/parse.h"
 
 namespace rubric::trace {
@@ -258,8 +259,10 @@ const Wrong kWrong[] = {
 class Diagnostics : public testing::TestWithParam<Wrong> {};
 
 TEST_P(Diagnostics, HaveTheirPlace) {
-  const Parsed parsed = parse(std::string(kAbove) + GetParam().line, "t.rtr");
-  EXPECT_EQ(parsed.errors(), std::string("t.rtr:5:") + GetParam().expected + "\n");
+  const std::string text = std::string(kAbove) + GetParam().line;
+  const std::string expected = std::string("t.rtr:5:") + GetParam().expected + "\n";
+  EXPECT_EQ(parse(text, "t.rtr").errors(), expected);
+  EXPECT_EQ(parse_headers(text, "t.rtr").errors(), expected);
 }
 
 INSTANTIATE_TEST_SUITE_P(Trace, Diagnostics, testing::ValuesIn(kWrong),
@@ -282,6 +285,12 @@ const Wrong kWrongFiles[] = {
     {"TimeGoesBack",
      "%rtr 1\n%node m5 mote id=5\ncase a\n@9 m5 < app get_clock()\n@8 m5 < app get_clock()\n",
      "5:1: time goes back, from @9 to @8"},
+    {"NotesBeforeVersion", "%note one\n%rtr 1\n", "1:1: the first header must be %rtr 1"},
+    {"NoNodeOfLink", "%rtr 1\ncase a\n%link rX radio m6\n%note one\n",
+     "3:1: no %node 'm6', which %link rX names"},
+    {"NodesOfTheCaseAlone",
+     "%rtr 1\n%node m5 mote id=5\ncase a\n%node m6 mote id=6\n0 m5 > rA *\ncase b\n0 m5 > rA *\n",
+     "5:1: no %node 'm5'"},
     {"NotOnLink",
      "%rtr 1\n%node m5 mote id=5 %node m6 mote id=6\n%link rX radio m6\ncase a\n0 m5 > rX *\n",
      "5:1: 'm5' is not on the link 'rX'"},
@@ -290,8 +299,9 @@ const Wrong kWrongFiles[] = {
 class FileDiagnostics : public testing::TestWithParam<Wrong> {};
 
 TEST_P(FileDiagnostics, HaveTheirPlace) {
-  const Parsed parsed = parse(GetParam().line, "t.rtr");
-  EXPECT_EQ(parsed.errors(), std::string("t.rtr:") + GetParam().expected + "\n");
+  const std::string expected = std::string("t.rtr:") + GetParam().expected + "\n";
+  EXPECT_EQ(parse(GetParam().line, "t.rtr").errors(), expected);
+  EXPECT_EQ(parse_headers(GetParam().line, "t.rtr").errors(), expected);
 }
 
 INSTANTIATE_TEST_SUITE_P(Trace, FileDiagnostics, testing::ValuesIn(kWrongFiles),

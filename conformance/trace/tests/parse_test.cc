@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "conformance/trace/each_line.h"
 #include "conformance/trace/print.h"
 
 namespace rubric::trace {
@@ -64,6 +65,30 @@ TEST(Parse, JoinExample) {
   const Scope scope = scope_of(parsed.file, first);
   ASSERT_EQ(scope.nodes.size(), 3u);
   EXPECT_TRUE(scope.nodes[0].iut);
+}
+
+TEST(Parse, LineByLineAsInWhole) {
+  const std::string text = std::string("\xEF\xBB\xBF%rtr 1 ; all\n%seed 3\n%node m5 mote id=5\n") +
+                           "case a\n\n; why\n%node m7 mote id=7 iut\n%note what\n" +
+                           "0 m7 < app get_clock()\n%note then\n1 m7 > rB * ; it\ncase b\n" +
+                           "2 m5 > rA *";
+  Parsed whole = parse(text, "t");
+  EXPECT_EQ(whole.errors(), "");
+  std::vector<Line> expected;
+  for (Case& one : whole.file.cases) {
+    for (const Line* line : one.lines()) expected.push_back(*line);
+    std::erase_if(one.items, [](const Item& item) {
+      const auto* header = item.as<Header>();
+      return !header || std::holds_alternative<NoteHeader>(header->what);
+    });
+  }
+  std::vector<Line> lines;
+  each_line(text, [&](const Line& line) { lines.push_back(line); });
+  EXPECT_EQ(lines, expected);
+  ASSERT_EQ(lines.size(), 3u);
+  const Parsed headers = parse_headers(text, "t");
+  EXPECT_EQ(headers.errors(), "");
+  EXPECT_EQ(headers.file, whole.file);
 }
 
 TEST(Parse, PrintsInOneLayout) {

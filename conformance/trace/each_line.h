@@ -1,0 +1,32 @@
+// Reads .rtr text line by line: the log of a run may be far longer than its headers.
+#pragma once
+
+#include <functional>
+#include <string_view>
+
+#include "conformance/trace/parse.h"
+
+namespace rubric::trace {
+
+/// Reads and checks a whole file as parse() does, and keeps of it only its cases' names and
+/// headers, without their notes. A header that comes too late, behind lines of its case, says
+/// nothing of those.
+Parsed parse_headers(std::string_view text, std::string_view file_name);
+/// Gives `take` each line of the cases of a sound file, in their order.
+void each_line(std::string_view text, const std::function<void(const Line&)>& take);
+
+/// Is told of the cases of a file while they are read.
+class Listener {
+ public:
+  virtual ~Listener() = default;
+  /// A case begins: the last of the file.
+  virtual void begin(const Case& one) = 0;
+  /// The case has a header.
+  virtual void header(const Header& one) = 0;
+  /// The case has a line, which nobody keeps.
+  virtual void line(const Line& one) = 0;
+};
+/// Checks the file of `parsed` while `read` adds to it and tells of its cases (check.h).
+void check_as_read(Parsed& parsed, const std::function<void(Listener&)>& read);
+
+}  // namespace rubric::trace
