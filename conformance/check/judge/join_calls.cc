@@ -338,8 +338,10 @@ void JoinCalls::judge_member(std::uint16_t mote, const MoteHypothesis& h, std::i
   // Unconfirmed, the call may wait for the end of all its requests, and fail (decision 102).
   // In a whole log it has the time of a golden trace.
   const bool whole = context_.device(mote).whole;
+  // What the link tells later than it answers is of another frame.
+  const std::int64_t told_us = std::min(end_us, h.acked_us + context_.response_us(mote));
   const std::int64_t over_us =
-      whole ? joined_us(mote, h, end_us) : std::max(last_expiry_us(mote, h), h.acked_us);
+      whole ? joined_us(mote, h, told_us) : std::max(last_expiry_us(mote, h), h.acked_us);
   const std::int64_t due_us = context_.due_us(mote, again ? calls.called.time_us : over_us);
   if (end_us <= due_us || !context_.tells_any(mote, due_us)) return;
   context_.report(
