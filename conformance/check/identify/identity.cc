@@ -95,7 +95,7 @@ class Identifier {
       sniffed_ = true;
       if (seen.frame.type == am::kJoin) remember_request(seen);
       roles_.look(seen.frame, index);
-      mark.device = streams_.assign(index, mark.repeat);  // A stream so far.
+      mark.device = streams_.assign(index, mark.repeat, mark.late);  // A stream so far.
       return;
     }
     if (seen.kind == Observation::Kind::kSerial) {

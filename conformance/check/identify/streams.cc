@@ -8,7 +8,6 @@
 namespace rubric::check {
 namespace {
 
-constexpr std::uint8_t kGapMax = 8;  // Beyond it a DSN does not follow the one before.
 constexpr std::size_t kHolesMax = 256;
 constexpr std::size_t kStreamsMax = 4096;
 constexpr int kLookMax = 16;  // Streams of one address that may go on, newest first.
@@ -120,7 +119,7 @@ int Streams::score(const Stream& stream, const Observation& seen, const IslandHi
   return points;
 }
 
-std::uint16_t Streams::assign(std::uint32_t index, bool& repeat) {
+std::uint16_t Streams::assign(std::uint32_t index, bool& repeat, bool& late) {
   const Observation& seen = run_.seen[index];
   const std::int64_t now = seen.place.time_us;
   const IslandHint hint = hint_of(seen.frame);
@@ -141,6 +140,7 @@ std::uint16_t Streams::assign(std::uint32_t index, bool& repeat) {
     if (stream.dsn == seen.dsn && before.dest == seen.frame.dest &&
         before.type == seen.frame.type && equal(before.payload, seen.frame.payload) && copy) {
       repeat = true;
+      late = now - stream.last_us > kLinkRepeatUs && !stepped(run_.steps, stream.last_us, now);
       stream.last_us = now;
       return i;
     }

@@ -64,8 +64,8 @@ class Streams {
  public:
   Streams(const Run& run, const Options& options);
   /// Returns the stream of observation `index`, a radio frame with DSN; kNobody if it could be of
-  /// two.
-  std::uint16_t assign(std::uint32_t index, bool& repeat);
+  /// two. `late`: it is repeated, but not within the time in which the link does that.
+  std::uint16_t assign(std::uint32_t index, bool& repeat, bool& late);
   const std::vector<Stream>& all() const { return streams_; }
   /// Returns how many frames belong to none since there are as many streams as are kept.
   std::uint64_t left_out() const { return left_out_; }
