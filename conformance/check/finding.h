@@ -35,6 +35,7 @@ struct Hypothesis {
 struct Finding {
   ReqId requirement = ReqId::kNone;
   Severity severity = Severity::kFail;
+  std::uint16_t device = UINT16_MAX;   ///< Number of the node: nodes of logs come first, in order.
   Place place;                         ///< The frame that shows it; for an absence, its cause.
   std::string node;                    ///< Name of the node that is judged, such as `mote 2`.
   std::string text;                    ///< The event, one or two sentences with the values.

@@ -149,6 +149,12 @@ inline bool parse_serial_joined(const Net& net, SerialJoined& out) {
   return true;
 }
 
+/// Returns whether it is one. It has the address of the mote, and the number of the sink.
+inline bool is_report(const Net& net) {
+  SerialJoined joined;
+  return parse_serial_joined(net, joined);
+}
+
 /// Returns the island id of a SET_ISLAND_ID config message; -1 for another message, or an id that
 /// no sink can have.
 inline std::int32_t set_island_id(const machine::Frame& frame) {

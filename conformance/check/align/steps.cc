@@ -10,17 +10,18 @@
 #include <vector>
 
 #include "conformance/check/align/align.h"
+#include "conformance/check/links.h"
 #include "conformance/check/message.h"
 #include "conformance/machine/transport.h"
 
 namespace rubric::check {
 namespace {
 
-constexpr std::int64_t kJitterUs = 10'000;  // Frames that a recorder's buffer turned round.
-constexpr std::int64_t kAcrossUs = 50'000;  // The same between two taps of it.
-constexpr std::int64_t kGoesOnUs = 1'000;   // How soon the first frame after a step comes.
-constexpr std::int64_t kLateAckUs = 50'000;
-constexpr std::size_t kInterruptedMax = 4;  // More often it is the nodes that are slow.
+constexpr std::int64_t kJitterUs = 10'000;          // Frames that a recorder's buffer turned round.
+constexpr std::int64_t kAcrossUs = 50'000;          // The same between two taps of it.
+constexpr std::int64_t kGoesOnUs = 1'000;           // How soon the first frame after a step comes.
+constexpr std::int64_t kLateAckUs = kLinkRepeatUs;  // Else of a copy that escaped.
+constexpr std::size_t kInterruptedMax = 4;          // More often it is the nodes that are slow.
 constexpr std::int64_t kResponseUs = AlignOptions{}.response_us;
 constexpr std::int64_t kSlowestUs = 1'000'000;  // Nobody waits for nodes that are slower.
 constexpr std::int64_t kHiddenUs = 1'000'000;   // A step forth that nothing shows is no longer.

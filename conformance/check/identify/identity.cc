@@ -95,9 +95,7 @@ class Identifier {
       sniffed_ = true;
       if (seen.frame.type == am::kJoin) remember_request(seen);
       roles_.look(seen.frame, index);
-      std::uint32_t taken_back = index;
-      mark.device = streams_.assign(index, mark.repeat, taken_back);  // A stream so far.
-      if (taken_back != index) out_.marks[taken_back].device = kNobody;
+      mark.device = streams_.assign(index, out_.marks);  // A stream so far.
       return;
     }
     if (seen.kind == Observation::Kind::kSerial) {

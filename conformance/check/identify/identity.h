@@ -64,6 +64,7 @@
 namespace rubric::check {
 
 constexpr std::uint16_t kNobody = 0xFFFF;
+constexpr std::uint8_t kGapMax = 8;  ///< Beyond it a DSN does not follow the one before.
 
 /// A node, found from its traffic: one AM address and one stream of DSNs; a sink also from its
 /// serial line; a base station from the frames down that line.
@@ -96,6 +97,7 @@ struct Mark {
   std::uint16_t device = kNobody;    ///< The node that sent it, called, or was notified.
   std::uint16_t receiver = kNobody;  ///< The node that a log's line gives something.
   bool repeat = false;               ///< The link's own repetition, or a log's second line of it.
+  bool late = false;                 ///< A repetition after the link's time, with the same DSN.
   bool again = false;                ///< By a log the receiver was given this frame before.
   bool new_life = false;             ///< The first frame after a reboot.
 };

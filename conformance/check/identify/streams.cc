@@ -8,7 +8,6 @@
 namespace rubric::check {
 namespace {
 
-constexpr std::uint8_t kGapMax = 8;  // Beyond it a DSN does not follow the one before.
 constexpr std::size_t kHolesMax = 256;
 constexpr std::size_t kStreamsMax = 4096;
 constexpr int kLookMax = 16;  // Streams of one address that may go on, newest first.
@@ -137,7 +136,7 @@ bool Streams::takes_back(Stream& stream, const Observation& seen, const IslandHi
   return true;
 }
 
-std::uint16_t Streams::assign(std::uint32_t index, bool& repeat, std::uint32_t& taken_back) {
+std::uint16_t Streams::assign(std::uint32_t index, std::vector<Mark>& marks) {
   const Observation& seen = run_.seen[index];
   const std::int64_t now = seen.place.time_us;
   const IslandHint hint = hint_of(seen.frame);
@@ -157,11 +156,13 @@ std::uint16_t Streams::assign(std::uint32_t index, bool& repeat, std::uint32_t& 
     const bool copy = now - stream.last_us <= kLinkRepeatUs || seen.frame.type != am::kJoin;
     if (stream.dsn == seen.dsn && before.dest == seen.frame.dest &&
         before.type == seen.frame.type && equal(before.payload, seen.frame.payload) && copy) {
-      repeat = true;
+      marks[index].repeat = true;
+      marks[index].late =
+          now - stream.last_us > kLinkRepeatUs && !stepped(run_.steps, stream.last_us, now);
       stream.last_us = now;
       return i;
     }
-    if (takes_back(stream, seen, hint)) taken_back = stream.last;
+    if (takes_back(stream, seen, hint)) marks[stream.last].device = kNobody;
     int points = score(stream, seen, hint);
     if (points == kNoMatch) continue;
     const bool request = seen.frame.type == am::kJoin;

@@ -65,9 +65,10 @@ class Streams {
  public:
   Streams(const Run& run, const Options& options);
   /// Returns the stream of observation `index`, a radio frame with DSN; kNobody if it could be of
-  /// two. Sets `repeat` if it is a copy of the frame before, and `taken_back` to an observation
-  /// that was assigned, and is now of nobody, as this one shows that it was of another stream.
-  std::uint16_t assign(std::uint32_t index, bool& repeat, std::uint32_t& taken_back);
+  /// two. Sets in its mark `repeat` if it is a copy of the frame before, and `late` if that did not
+  /// come within the time in which the link repeats. An earlier frame that is shown to be of
+  /// another sender is nobody's from then on.
+  std::uint16_t assign(std::uint32_t index, std::vector<Mark>& marks);
   const std::vector<Stream>& all() const { return streams_; }
   /// Returns how many frames belong to none since there are as many streams as are kept.
   std::uint64_t left_out() const { return left_out_; }

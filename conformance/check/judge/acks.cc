@@ -151,6 +151,7 @@ void Acks::sent(std::uint16_t node, const Observation& seen, const Net& ack,
   // Picks the best message with that number: one that waits for its ack.
   Arrived* best = nullptr;
   const auto rank = [](const Arrived& a) {
+    if (is_report(a.net)) return -1;
     if (a.forbidden != ReqId::kNone) return 0;
     const bool connless = a.net.trans_id == component::kConnless;
     if (a.net.reliable != 1 || !connless || a.net.broadcast()) return 1;
@@ -159,8 +160,7 @@ void Acks::sent(std::uint16_t node, const Observation& seen, const Net& ack,
   for (std::size_t i = 0; i < ring.size(); ++i) {
     Arrived& arrived = ring.newest(i);
     if (arrived.net.seq_num != acked || arrived.net.src != ack.dest) continue;
-    SerialJoined joined;  // It has the mote's address and the sink's number.
-    if (parse_serial_joined(arrived.net, joined) || never_came(node, arrived)) continue;
+    if (never_came(node, arrived)) continue;
     if (best == nullptr || rank(arrived) > rank(*best)) best = &arrived;
   }
   if (best == nullptr || rank(*best) < 3) {
@@ -248,11 +248,11 @@ void Acks::refuse(std::uint16_t node, const Observation& seen, const Net& ack, s
   Said said;
   ReqId rule = "T2-CONTENT"_rule;
   Severity severity = Severity::kFail;
+  const bool report = best != nullptr && is_report(best->net);
   if (acked < 0) {
-    said.text = "An ack has a body of " + number(ack.body().size()) +
-                " bytes that holds no sequence number.";
+    said.text = "An ack's body of " + number(ack.body().size()) + " bytes holds no number.";
     said.expected = "The acknowledged number, alone or in a learning_notification.";
-  } else if (best == nullptr) {
+  } else if (best == nullptr || report) {
     // What a mote of its own island sends comes by radio alone.
     const bool of_mote = ack.dest.pid == ack.src.pid && !machine::is_reserved(ack.dest.devid);
     if (context_.half_heard(node) && !of_mote) return context_.needs_host(node, seen.place);
@@ -260,12 +260,16 @@ void Acks::refuse(std::uint16_t node, const Observation& seen, const Net& ack, s
     if (!of_mote && (!context_.has_lines(node) || context_.by_peis(node, ack.dest.pid))) {
       severity = Severity::kInconclusive;
     }
-    meant_ack(node, ack);
+    if (!report) meant_ack(node, ack);
     early_[node] = {ack.dest, static_cast<std::uint16_t>(acked), now};
     said.text = "An ack to " + text_of(ack.dest) + " of number " +
                 number(static_cast<std::uint64_t>(acked)) +
                 ", which no message that came to this node had.";
     said.expected = "The number of a reliable message from " + text_of(ack.dest) + ".";
+    if (report && severity == Severity::kFail && best->net.app_id == ack.app_id) {
+      rule = "T2-UNRELIABLE"_rule;
+      said.text = "It acks the serial_joined of " + text_of(ack.dest) + ".";
+    }
   } else if (best->forbidden != ReqId::kNone) {
     rule = best->forbidden;
     if (best->weak) severity = Severity::kWeak;
@@ -292,7 +296,6 @@ void Acks::refuse(std::uint16_t node, const Observation& seen, const Net& ack, s
     said.text = "It acks the broadcast " + number(best->net.seq_num) + ".";
     said.expected = "A broadcast is not acked.";
   } else if (best->net.trans_id != component::kConnless) {
-    rule = "T2-CONTENT"_rule;
     said.text =
         "It acks " + name_of(best->net) + ", whose TRANSID is " + number(best->net.trans_id) + ".";
     said.expected = "Acks of Connectionless messages.";
@@ -308,6 +311,7 @@ void Acks::refuse(std::uint16_t node, const Observation& seen, const Net& ack, s
 
 void Acks::delivered(std::uint16_t node, const Observation& seen,
                      const machine::Received& received) {
+  const std::int64_t now = seen.place.time_us;
   Ring<Arrived, kRoom>& ring = arrived_[node];
   const bool whole = context_.device(node).whole;  // Then of several the oldest comes first.
   Arrived* best = nullptr;
@@ -351,7 +355,7 @@ void Acks::delivered(std::uint16_t node, const Observation& seen,
     context_.report("T1-DELIVER"_rule,
                     context_.by_peis(node, received.src.pid) || !context_.has_lines(node)
                         ? Severity::kInconclusive
-                        : context_.without(kNobody, context_.run.start_us, seen.place.time_us),
+                        : context_.without(kNobody, context_.run.start_us, now, node),
                     seen.place, node,
                     {"The application gets " + number(received.data.size()) + " bytes from " +
                          text_of(received.src) + " for APPID " + number(received.app_id) +
@@ -380,10 +384,8 @@ void Acks::delivered(std::uint16_t node, const Observation& seen,
     return;
   }
   const bool forbidden = best->forbidden != ReqId::kNone;
-  const Severity severity =
-      !forbidden   ? context_.without(best->sender, best->place.time_us, seen.place.time_us)
-      : best->weak ? Severity::kWeak
-                   : Severity::kFail;
+  Severity severity = best->weak ? Severity::kWeak : Severity::kFail;
+  if (!forbidden) severity = context_.without(best->sender, best->place.time_us, now, node);
   context_.report(forbidden ? best->forbidden : "N2-IN-ORDER"_rule, severity, seen.place, node,
                   {"The application gets " + name_of(best->net) +
                        (forbidden ? ", which the node should have dropped or ignored."

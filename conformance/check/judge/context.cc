@@ -1,6 +1,7 @@
 #include "conformance/check/judge/context.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <optional>
 
@@ -156,6 +157,7 @@ void Context::look_up() {
     report(one.requirement, Severity::kInconclusive, run.seen[one.index].place, node,
            {one.text, one.expected, {}});
   }
+  find_restarts();
   lossy_taps = find_lossy_taps(run, who, options);
   lossy_air = who.hears_radio && misses_air(who, options);
   untimed_taps = run.unordered_taps;
@@ -169,6 +171,52 @@ void Context::look_up() {
     order = its;
     if (its >= 0) untimed_taps[seen.tap] = true;
   }
+}
+
+void Context::find_restarts() {
+  struct Heard {
+    std::map<std::uint16_t, std::pair<std::uint8_t, std::int64_t>> last;  // By device: DSN, time.
+    std::array<int, 256> at_dsn = {};  // How many devices sent that DSN last.
+  };
+  std::map<std::uint16_t, Heard> heard;  // By AM address.
+  for (const std::uint16_t sink : sinks) heard[device(sink).am];
+  for (std::size_t i = run.past.senders.size(); i < run.seen.size(); ++i) {
+    const Observation& seen = run.seen[i];
+    const std::uint16_t sender = who.marks[i].device;
+    if (seen.kind != Observation::Kind::kRadio || !seen.has_dsn || sender == kNobody) continue;
+    const auto at = heard.find(seen.frame.src);
+    if (at == heard.end()) continue;
+    Heard& its = at->second;
+    // Which of them it is of may be wrong; a DSN that goes on with none has begun anew.
+    bool goes_on = false;
+    for (int gap = 0; gap <= kGapMax; ++gap) {
+      goes_on |= its.at_dsn[static_cast<std::uint8_t>(seen.dsn - gap)] > 0;
+    }
+    const std::int64_t now_us = seen.place.time_us;
+    for (const std::uint16_t sink : sinks) {
+      const auto last = its.last.find(sink);
+      if (goes_on || last == its.last.end()) continue;
+      const bool stranger = !device(sender).known && device(sink).last_us < now_us;
+      if (sink != sender && !stranger) continue;
+      auto& begun = restarts_[sink];
+      const std::int64_t since_us = last->second.second;
+      if (!begun.empty() && begun.back().first == since_us) begun.pop_back();
+      begun.emplace_back(since_us, now_us);
+    }
+    const auto [last, first] = its.last.try_emplace(sender, seen.dsn, now_us);
+    if (!first) --its.at_dsn[last->second.first];
+    last->second = {seen.dsn, now_us};
+    ++its.at_dsn[seen.dsn];
+  }
+}
+
+bool Context::may_have_restarted(std::uint16_t sink, std::int64_t from_us,
+                                 std::int64_t to_us) const {
+  const auto begun = restarts_.find(sink);
+  if (begun == restarts_.end() || device(sink).hearing) return false;
+  return std::ranges::any_of(begun->second, [&](const auto& between) {
+    return between.first < to_us && between.second > from_us;
+  });
 }
 
 bool Context::rests_on_order(ReqId requirement, const Place& at, std::uint16_t node) const {
@@ -441,9 +489,11 @@ void Context::begin_life(std::uint16_t node) {
   }
 }
 
-Severity Context::without(std::uint16_t cause, std::int64_t from_us, std::int64_t to_us) const {
-  return who.maybe_unseen(cause, from_us, to_us, options) ? Severity::kInconclusive
-                                                          : Severity::kFail;
+Severity Context::without(std::uint16_t cause, std::int64_t from_us, std::int64_t to_us,
+                          std::uint16_t node) const {
+  const bool ended = node != kNobody && to_us > captures_end_us(node);
+  return ended || who.maybe_unseen(cause, from_us, to_us, options) ? Severity::kInconclusive
+                                                                   : Severity::kFail;
 }
 
 Severity Context::without_copy(std::uint16_t sender, const Place& first,
@@ -480,6 +530,7 @@ void Context::report(ReqId requirement, Severity severity, const Place& at, std:
     const Device& d = device(node);
     if (!d.judged) return;
     finding.node = d.name;
+    finding.device = node;
     if (!d.known && severity > Severity::kNote) finding.severity = Severity::kStray;
   }
   const bool blames = finding.severity == Severity::kFail || finding.severity == Severity::kWeak;

@@ -190,9 +190,14 @@ struct Context {
     return {profile(node), device(node).am, island, 0, machine::ticks_of(now_us)};
   }
 
+  /// Returns whether a sink may have started anew between two times: by later frames of the air it
+  /// did between its last frame before and the first of a new life.
+  bool may_have_restarted(std::uint16_t sink, std::int64_t from_us, std::int64_t to_us) const;
+
   /// Returns the severity of "X without an earlier Y of `cause`": kFail only if no Y can have
-  /// escaped.
-  Severity without(std::uint16_t cause, std::int64_t from_us, std::int64_t to_us) const;
+  /// escaped. What the log of `node` tells after all captures have ended may rest on a later frame.
+  Severity without(std::uint16_t cause, std::int64_t from_us, std::int64_t to_us,
+                   std::uint16_t node = kNobody) const;
   /// Returns the same where Y is the link's own copy of a frame that `sender` sent at `first`.
   Severity without_copy(std::uint16_t sender, const Place& first, std::int64_t now_us) const;
   /// Returns the same where any mote of that address may have sent Y.
@@ -242,11 +247,14 @@ struct Context {
   std::optional<std::pair<std::int64_t, std::int64_t>> captured_;  // The same of all captures.
   std::vector<std::set<std::size_t>> told_;  // Which kinds of events its application got.
   Terms unlogged_;
+  // By sink: times between which a life of it may have begun.
+  std::map<std::uint16_t, std::vector<std::pair<std::int64_t, std::int64_t>>> restarts_;
 
   // Returns whether the node has a log, and captures alone show what it sends.
   bool logs_beside_captures(std::uint16_t node) const {
     return node < logs_us_.size() && captured_ && !device(node).hearing;
   }
+  void find_restarts();
   int backlog_of(std::uint16_t node, std::size_t index) const;
   int backlog(std::uint16_t node, std::int64_t time_us) const;
   /// Findings that are told as one.

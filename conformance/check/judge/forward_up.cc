@@ -102,7 +102,12 @@ void Forwarding::pass_up(Line& line, Passing& passing, const Observation& seen) 
     if (of_island && context_.half_heard(line.sink)) {
       return context_.needs_host(line.sink, seen.place);
     }
-    if (!format && !line.island_sure) severity = std::min(severity, Severity::kInconclusive);
+    const bool lost =
+        passing.forbidden == "N9-SET"_rule &&  // Perhaps its power, and that island.
+        context_.may_have_restarted(line.sink, line.island_changed_us, seen.place.time_us);
+    if (!format && (!line.island_sure || lost)) {
+      severity = std::min(severity, Severity::kInconclusive);
+    }
     context_.report(passing.forbidden, severity, seen.place, line.sink, std::move(said));
   } else {
     ++line.forwarded;

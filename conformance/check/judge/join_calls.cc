@@ -226,9 +226,11 @@ void JoinCalls::told(std::uint16_t mote, const Observation& seen, const machine:
         member ? "The address of the reply." : "Nothing, or FAIL after the last request.";
     const bool foreign = joined.address.devid != context_.device(mote).am;
     const bool wrong = h.unaccepted || (motes_.stray_offer(mote) && foreign);
+    // Until its ack_join is seen the reply that it took may be one that escaped.
+    const bool known = member && (h.acks_seen > 0 || foreign);
     context_.report(
         member ? "J5-SUCCESS"_rule : "J5-ACCEPT"_rule,
-        member || wrong ? Severity::kFail : context_.without(kNobody, h.first_request_us, now),
+        known || wrong ? Severity::kFail : context_.without(kNobody, h.first_request_us, now),
         seen.place, mote, std::move(said));
     set = before;
     return;
@@ -288,7 +290,12 @@ void JoinCalls::told(std::uint16_t mote, const Observation& seen, const machine:
   said.expected = "Not before expiry " + number(expiries) + " of the timer, " +
                   ms_text(expiries * context_.join_period_us(mote)) + ".";
   said.beyond = true;
-  context_.report("J8-FAIL"_rule, before_log ? Severity::kInconclusive : Severity::kFail,
+  // Of a call that lasted long enough the first requests may have escaped.
+  const std::int64_t least_us = expiries * context_.join_period_us(mote) - context_.early_us(mote);
+  const bool lasted =
+      calls.last && !context_.device(mote).hearing && now - calls.called.time_us >= least_us &&
+      (!context_.options.sniffer_complete || context_.before_captures(mote, calls.called.time_us));
+  context_.report("J8-FAIL"_rule, before_log || lasted ? Severity::kInconclusive : Severity::kFail,
                   seen.place, mote, std::move(said));
 }
 

@@ -178,9 +178,9 @@ void Judge::radio(std::uint32_t index, const Observation& seen, const Mark& mark
       Reply reply;
       if (!parse_reply(seen.frame.payload, reply)) return cut_off(seen, mark.device);
       if (is(mark.device, Role::kSink)) {
-        sinks_.reply(mark.device, seen, reply);
+        const std::uint16_t answered = sinks_.reply(mark.device, seen, reply);
         island_shown(mark.device, seen.place.time_us);
-        joins_.answered(mark.device, seen.frame.dest, seen.place);
+        joins_.answered(mark.device, answered, seen.place);
       }
       if (is(mark.device, Role::kMote)) {
         role_broken("J10-MOTE"_rule, "A mote sends a join_reply.", seen, mark.device);
@@ -359,8 +359,15 @@ void Judge::repeated(std::uint32_t index, const Observation& seen, const Mark& m
   if (mark.receiver != kNobody) return surely(seen, mark, net);
   const bool serial = seen.kind == Kind::kSerial;
   if (serial && mark.device == kNobody) return;
+  if (mark.late && mark.device != kNobody && net.reliable == 1) {
+    context_.report("T3-RESEND"_rule, Severity::kInconclusive, seen.place, mark.device,
+                    {name_of(net) + " leaves again with its DSN, later than the link repeats it.",
+                     "A link's repetition within " + ms_text(kLinkRepeatUs) + ".",
+                     {}});
+  }
   forwarding_.repeated(net, serial ? who_.devices[mark.device].partner : kNobody);
   const std::int64_t now = seen.place.time_us;
+  if (!serial && mark.device != kNobody) synaptic_.repeated(mark.device, now);
   context_.for_motes(seen.frame.dest, [&](std::uint16_t mote) { acks_.repeated(mote, net, now); });
   for (const std::uint16_t sink : context_.sinks) acks_.repeated(sink, net, now);
 }
@@ -439,8 +446,10 @@ void Judge::own_message(std::uint16_t node, const Observation& seen, const Net& 
                         machine::Link link, machine::Address own) {
   interfaces_.own_message(node, seen, net.seq_num);
   originals_.sent(node, seen, net, link, own);
+  Net meant = net;  // An ack to the local island is said by N3-LOCAL, and answers all the same.
+  if (net.dest.pid == machine::kLocalPid) meant.dest.pid = own.pid;
   // Late, an ack is not missing (decision 125).
-  if (net.is_ack()) acks_.sent(node, seen, net, ack_timeout_us(net.dest));
+  if (net.is_ack()) acks_.sent(node, seen, meant, ack_timeout_us(meant.dest));
   acks_.showed_life(node, seen.place.time_us);
   if (net.sound && net.trans_id == component::kSynChannel) synaptic_.sent(node, seen, net);
 }

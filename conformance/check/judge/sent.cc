@@ -166,13 +166,16 @@ void Originals::judge_unsent(std::uint16_t node, std::int64_t end_us,
 // Says that a message which may leave since a while never did.
 void Originals::judge_missing(std::uint16_t node, Call& call, std::int64_t now_us) {
   if (call.free || call.held || call.left || !call.result || call.result == machine::kNoSeq) return;
-  if (now_us <= context_.due_us(node, call.since_us, call.line)) return;
+  const std::int64_t due_us = context_.due_us(node, call.since_us, call.line);
+  if (now_us <= due_us) return;
   const bool base = context_.device(node).role == Role::kBaseStation;
   const std::int64_t called_us = call.place.time_us;
   const bool waited = !base && context_.busy(node, called_us, called_us, call.line);
   ReqId rule = waited ? "N2-QUEUE"_rule : "N2-ONCE"_rule;
   if (base) rule = call.line == Link::kSerial ? "N8-SERIAL"_rule : "N8-PEIS"_rule;
-  context_.report(rule, Severity::kFail, call.place, node,
+  // Captures that end before its log do not show what was due later.
+  const bool ended = due_us > context_.captures_end_us(node);
+  context_.report(rule, ended ? Severity::kInconclusive : Severity::kFail, call.place, node,
                   {"send accepted the message to " + text_of(call.send->dest) + " with number " +
                        number(*call.result) + (waited ? " while the line was busy" : "") +
                        ", and it never left.",

@@ -113,8 +113,9 @@ void Originals::told(std::uint16_t node, const Observation& seen, const machine:
     }
     const bool came = heard_ack(node, ack.seq_num, [](const Net&) { return true; });
     context_.report(came || !ack.success ? "T3-MATCH"_rule : "T3-SUCCESS"_rule,
-                    elsewhere || forgotten || before ? Severity::kInconclusive
-                                                     : context_.without(node, device.first_us, now),
+                    elsewhere || forgotten || before
+                        ? Severity::kInconclusive
+                        : context_.without(node, device.first_us, now, node),
                     seen.place, node,
                     {what + " although the node has sent no reliable message with that number.",
                      "The number of the message that was acked.",
@@ -170,7 +171,7 @@ void Originals::told(std::uint16_t node, const Observation& seen, const machine:
     context_.report(strays_us_[node] >= match->place.time_us ? "T3-MATCH"_rule : "T3-SUCCESS"_rule,
                     all ? Severity::kFail
                     : context_.has_lines(node)
-                        ? context_.without(kNobody, match->place.time_us, now)
+                        ? context_.without(kNobody, match->place.time_us, now, node)
                         : Severity::kInconclusive,
                     seen.place, node,
                     {what + ", but no ack of it was heard.", "No receive_ack before the ack.", {}});

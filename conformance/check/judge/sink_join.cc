@@ -144,13 +144,16 @@ bool SinkJoins::keeps_former(SinkWatch& sink, std::uint16_t shown, const Place& 
       at.time_us <= context_.due_us(sink.device, sink.island_set_us)) {
     return true;
   }
+  const bool behind = sink.behind_us > sink.island_set_us;
   const bool rebooted =
-      sink.behind_us > sink.island_set_us && !context_.device(sink.device).hearing;
+      !context_.device(sink.device).hearing &&
+      (behind || context_.may_have_restarted(sink.device, sink.island_set_us, at.time_us));
   if (sink.island_sure && !rebooted) return false;
   context_.report("N9-SET"_rule, Severity::kInconclusive, at, sink.device,
                   {"The sink acts for island " + number(shown) + " after it was told island " +
                        number(sink.island) +
-                       (rebooted ? "; its clock began anew, so that it may have lost its power."
+                       (rebooted ? std::string("; its ") + (behind ? "clock" : "DSNs") +
+                                       " began anew, so that it may have lost its power."
                                  : "; nothing proves that it heard that."),
                    "Island " + number(sink.island) + ", if it was told.",
                    {}});
@@ -309,9 +312,10 @@ bool SinkJoins::owes(SinkWatch& sink, std::uint16_t mote_am, std::uint16_t seq_n
          });
 }
 
-void SinkJoins::reply(std::uint16_t sink_device, const Observation& seen, const Reply& reply) {
+std::uint16_t SinkJoins::reply(std::uint16_t sink_device, const Observation& seen,
+                               const Reply& reply) {
   SinkWatch* const sink = find(sink_device);
-  if (sink == nullptr) return;
+  if (sink == nullptr) return seen.frame.dest;
   const bool astray =
       seen.frame.dest != reply.mote &&
       (seen.frame.dest == machine::kAmBroadcast ||
@@ -413,6 +417,7 @@ void SinkJoins::reply(std::uint16_t sink_device, const Observation& seen, const 
   watch.answered_us = seen.place.time_us;
   watch.cut_off = false;
   watch.answered_seq = reply.seq_num;
+  return am;
 }
 
 void SinkJoins::refuse_reply(SinkWatch& sink, PairWatch& watch, const Observation& seen,
@@ -470,7 +475,10 @@ void SinkJoins::refuse_reply(SinkWatch& sink, PairWatch& watch, const Observatio
   }
   context_.report(rule, severity, seen.place, sink.device, std::move(said));
   SinkHypothesis next = h;
-  next.unknown = true;  // Its stored request is unknown now.
+  // Its stored request is unknown now, unless this was the answer to it, with a wrong number.
+  next.unknown = rule != "J3-SEQ"_rule || severity != Severity::kFail;
+  if (!next.unknown) next.pending = Admission{am, watch.request_seq, {}};
+  if (!next.unknown) unanswered_[am].open = false;
   next.owed = 0;
   next.owes_older = false;
   watch.set.assign(1, next);

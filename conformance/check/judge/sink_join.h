@@ -151,7 +151,8 @@ class SinkJoins {
   static ReqId wrong_island(const SinkWatch& sink, std::uint16_t other, ReqId otherwise);
   void request(std::uint16_t mote_device, const Observation& seen, const Request& request,
                std::uint16_t surely_received_by);
-  void reply(std::uint16_t sink, const Observation& seen, const Reply& reply);
+  /// Returns the AM address of the mote that it answers, be it sent there or not.
+  std::uint16_t reply(std::uint16_t sink, const Observation& seen, const Reply& reply);
   void ack_join(std::uint16_t mote_device, const Observation& seen, const AckJoin& ack,
                 std::uint16_t surely_received_by);
   /// Notes that the sink calls a mote gone, so that it lists it no more. (decision 124)

@@ -4,6 +4,8 @@
 #include <cstdlib>
 #include <utility>
 
+#include "conformance/check/links.h"
+
 namespace rubric::check {
 namespace {
 
@@ -322,6 +324,11 @@ void SynapticWatch::sent(std::uint16_t device, const Observation& seen, const Ne
   }
   out->sent_us = now;
   out->newest = current && !again;
+}
+
+void SynapticWatch::repeated(std::uint16_t device, std::int64_t now_us) {
+  std::int64_t& data_us = nodes_[device].data_us;
+  if (data_us >= 0 && now_us - data_us <= kLinkRepeatUs) data_us = now_us;
 }
 
 // Judges data of a channel that the application did not create.

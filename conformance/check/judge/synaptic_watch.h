@@ -38,6 +38,8 @@ class SynapticWatch {
   void finish();
   /// Judges synaptic data, a sound net_msg, that `node` sends.
   void sent(std::uint16_t node, const Observation& seen, const Net& net);
+  /// Takes the link's own repetition of a frame of the node: what it sends next had to wait for it.
+  void repeated(std::uint16_t node, std::int64_t now_us);
 
  private:
   static constexpr std::size_t kChannelsMax = 16;

@@ -68,6 +68,31 @@ TEST(Captures, ASinkThatLostItsPowerHasItsFirstIsland) {
   EXPECT_EQ(found_in(moved(1500, true, 11, 5)), "I:J3-DRIFT I:N9-SET");
 }
 
+TEST(Captures, ASinkThatLostItsPowerForwardsForItsFirstIsland) {
+  const auto found = [](std::uint8_t dsn, int frames) {
+    Script script;
+    script.join(0, 11, 2, 100);
+    script.net(500, 2, 1, message({11, 2}, {11, 1}, 5, 1));
+    script.net(510, 1, 2, message({11, 2}, {11, 1}, 5, 1).ack(30), 11);
+    set_island(script, 1500, 13);
+    forwards(script, 3000, 2, 7);
+    script.dsn[11 * 65536U + 1] += dsn;
+    for (int i = 0; i < frames; ++i) {
+      script.net(5000 + 100.0 * i, 1, machine::kAmBroadcast,
+                 message({11, 1}, {11, machine::kBroadcastDevid}, static_cast<std::uint16_t>(i)),
+                 11);
+    }
+    return found_in(script, false);
+  };
+  for (const int frames : {0, 1, 3}) {
+    EXPECT_NE(found(0, frames).find("F:N9-SET"), std::string::npos) << found(0, frames);
+  }
+  for (const int frames : {1, 2, 3, 5}) {  // Its DSNs begin anew.
+    EXPECT_EQ(found(100, frames).substr(0, 8), "I:N9-SET") << frames;
+    EXPECT_EQ(found(100, frames).find("F:"), std::string::npos) << found(100, frames);
+  }
+}
+
 TEST(Captures, WhatWasUnderWayShowsTheFormerIsland) {
   EXPECT_EQ(found_in(moved(3005, true, 11)), "F:N9-SET");  // Its ack_join came after.
   Script script;
@@ -115,6 +140,20 @@ TEST(Captures, AfterAJoinRequestNothingIsAwaited) {
   again.net(500, 2, 1, message({11, 2}, {11, 1}, 1, 1));
   again.net(900, 2, 1, message({11, 2}, {11, 1}, 1, 1));
   EXPECT_NE(found_in(again).find("F:T3-RESEND"), std::string::npos) << found_in(again);
+}
+
+// The link repeats a frame within 100 ms.
+TEST(Captures, ACopyIsTheLinksOnlySoLong) {
+  const auto found = [](double ms) {
+    Script script;
+    script.join(0, 11, 2, 100).net(1000, 2, 1, message({11, 2}, {11, 1}, 1, 1));
+    --script.dsn[2];
+    script.net(1000 + ms, 2, 1, message({11, 2}, {11, 1}, 1, 1));
+    script.net(1000 + ms + 20, 1, 2, message({11, 2}, {11, 1}, 1, 1).ack(5), 11);
+    return found_in(script);
+  };
+  EXPECT_EQ(found(90), "");
+  EXPECT_NE(found(600).find("I:T3-RESEND"), std::string::npos) << found(600);
 }
 
 TEST(Captures, ALineGoesOnInTheNextFile) {

@@ -147,5 +147,41 @@ TEST(JoinWatch, InACaptureALinkAckProvesReception) {
   EXPECT_EQ(seen(asks(true), true), "(J3-REPLY) ") << "Nothing shows that it lives.";
 }
 
+// By its log a mote joins an island whose reply nobody captured.
+TEST(JoinWatch, AReplyThatEscapedIsNoOthers) {
+  const auto joins = [](std::uint16_t acked, double ack_ms, bool complete) {
+    Script script;
+    script.request(10, 2, 100).reply(30, 11, 2, 100, 30);
+    script.ack_join(ack_ms, acked, 2, 100).link_ack();
+    script.net(2000, 2, 1, message({acked, 2}, {acked, 1}, 7));
+    return found_beside(script,
+                        m2(0, "< app join(type=1 transducers=1 actuators=1)") +
+                            m2(40, "> app joined(12:2 success)"),
+                        complete);
+  };
+  const auto blames = [](const std::string& found) {
+    return found.find("F:J5-SUCCESS") != std::string::npos;
+  };
+  EXPECT_FALSE(blames(joins(12, 45, false))) << joins(12, 45, false);
+  EXPECT_TRUE(blames(joins(12, 45, true))) << joins(12, 45, true);
+  EXPECT_TRUE(blames(joins(11, 35, false))) << joins(11, 35, false);
+}
+
+// The first requests of a call may have escaped; a call that ends too early is found all the same.
+TEST(JoinWatch, ACallLastsAsLongAsItsRequestsThatEscaped) {
+  const auto fails = [](int ms, bool complete) {
+    Script script;
+    script.join(0, 11, 3, 100).request(4498, 2, 500).request(4986, 2, 500).request(5474, 2, 500);
+    script.net(7000, 3, 1, message({11, 3}, {11, 1}, 7));
+    return found_beside(
+        script,
+        m2(4000, "< app join(type=1 transducers=1 actuators=1)") + m2(ms, "> app joined(0:0 fail)"),
+        complete);
+  };
+  EXPECT_EQ(fails(5970, false).find("F:J8-FAIL"), std::string::npos) << fails(5970, false);
+  EXPECT_NE(fails(5970, true).find("F:J8-FAIL"), std::string::npos) << fails(5970, true);
+  EXPECT_NE(fails(5500, false).find("F:J8-FAIL"), std::string::npos) << fails(5500, false);
+}
+
 }  // namespace
 }  // namespace rubric::check::join_watch_test

@@ -416,6 +416,40 @@ TEST(Judge, AMessageFromAnotherAddressIsJudgedSinceTheLastFromItsOwn) {
   }
 }
 
+TEST(Judge, OneCauseBreaksOneRule) {
+  const auto found = [](const Script& script) { return broken_in(judge(script.run, complete())); };
+  // A reply with a wrong number answers the request, and the next one has an answer of its own.
+  Script script = two_motes();
+  for (int i = 0; i < 4; ++i) {
+    script.request(1000 + 490.0 * i, 4, 300).link_ack();
+    script.reply(1010 + 490.0 * i, 11, 4, 301, static_cast<std::uint32_t>(1010 + 490 * i));
+  }
+  end_well(script, 5000);
+  EXPECT_EQ(found(script), "J3-SEQ");
+  // So does one to all.
+  Script all = two_motes();
+  all.request(1000, 4, 300).link_ack().reply(1010, 11, 4, 300, 1010, machine::kAmBroadcast);
+  all.request(1490, 4, 300).link_ack();
+  all.request(1495, 5, 400).link_ack().reply(1505, 11, 5, 400, 1505).ack_join(1510, 11, 5, 400);
+  all.link_ack().reply(1520, 11, 4, 300, 1520, machine::kAmBroadcast).joined(1530, 11, 5);
+  end_well(all, 5000);
+  EXPECT_EQ(found(all), "J3-DEST");
+  // An ack to the local island is an ack.
+  NetFields net = reliable({11, 2}, {11, kNullDevid}, 7);
+  Script local = two_motes();
+  local.net(1000, 2, 1, net).up(1010, net.forwarded());
+  NetFields ack = net.ack(9);
+  ack.dest.pid = machine::kLocalPid;
+  local.down(1030, ack).confirm();
+  EXPECT_EQ(found(local), "N3-LOCAL");
+  // An ack of serial_joined is one of an unreliable message.
+  Script report;
+  net = message({11, 2}, {11, kNullDevid}, 0);
+  net.app_id = 10;
+  report.join(0, 11, 2, 100).down(100, net.ack(9)).confirm().net(110, 1, 2, net.ack(9), 11);
+  EXPECT_EQ(found(report), "T2-UNRELIABLE");
+}
+
 // A host sends again what was not confirmed, and the sink acks what comes to it each time.
 TEST(Judge, AnAckOfWhatCameAgainIsPrompt) {
   Script script;

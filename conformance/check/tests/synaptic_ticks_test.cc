@@ -5,6 +5,7 @@
 #include <sstream>
 #include <string>
 
+#include "conformance/check/tests/testing.h"
 #include "conformance/check/tests/testing_log.h"
 
 namespace rubric::check::synaptic_ticks_test {
@@ -164,6 +165,35 @@ TEST(SynapticTicks, AStartShiftsNoOtherChannel) {
   };
   EXPECT_EQ(all(first + second + later(1616)), "");
   EXPECT_EQ(all(first + second + later(1798)), "S6-CLOCK");
+}
+
+// Of two channels of a mote one has data that the link repeats; those of the other wait meanwhile.
+TEST(SynapticTicks, DataWaitWhileTheLinkRepeatsOthers) {
+  const auto repeated = [](int times) {
+    Script script;
+    script.join(0, 11, 2, 100).join(60, 11, 3, 200);
+    const auto data = [&](double ms, std::uint16_t to, std::uint16_t number) {
+      NetFields net = message({11, 2}, {11, to}, number);
+      net.body.assign(4, 0);
+      net.trans_id = component::kSynChannel;
+      net.app_id = static_cast<std::uint8_t>(rubicon::Component::kEsnData);
+      script.net(ms, 2, to, net);
+    };
+    for (std::uint16_t tick = 0; tick < 3; ++tick) {
+      const double ms = 1000 + 488.3 * tick;
+      data(ms, 3, tick);
+      for (int i = 1; i <= times && tick == 1; ++i) {
+        --script.dsn[2];
+        data(ms + 18 * i, 3, tick);
+      }
+      data(ms + (tick == 1 ? 60 : 4), 1, static_cast<std::uint16_t>(tick + 10));
+    }
+    return found_beside(script, m2(200, "< app create_out(dest=11:3 size=1 mode=reliable)") +
+                                    m2(200, "< app create_out(dest=11:1 size=1 mode=reliable)") +
+                                    m2(510, "< app start_all()"));
+  };
+  EXPECT_EQ(repeated(3).find("S2-TICK"), std::string::npos) << repeated(3);
+  EXPECT_NE(repeated(0).find("F:S2-TICK"), std::string::npos) << repeated(0);
 }
 
 }  // namespace

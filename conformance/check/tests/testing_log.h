@@ -3,11 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 
 #include "conformance/check/observation.h"
 #include "conformance/check/tests/failures.h"
 #include "conformance/check/tests/must_read.h"
+#include "conformance/check/tests/testing.h"
 
 namespace rubric::check {
 
@@ -29,6 +31,24 @@ inline std::string at(int ms, const std::string& rest) {
   return "   @" + std::to_string(ms) + " " + rest + "\n";
 }
 inline std::string m2(int ms, const std::string& rest) { return at(ms, "m2 " + rest); }
+
+/// Returns the same as found_in() of what the script captures beside lines of mote 2's application.
+inline std::string found_beside(Script script, const std::string& lines, bool complete = false) {
+  const Run log = must_read(
+      "log", "%rtr 1  %profile paper  %tick ms\n%node m2 mote id=2\n\ncase log\n" + lines);
+  Run& run = script.run;
+  for (Observation seen : log.seen) {
+    seen.place.file = 1;
+    seen.place.time_us += log.begin_us;
+    run.seen.push_back(seen);
+  }
+  std::ranges::stable_sort(run.seen, {},
+                           [](const Observation& seen) { return seen.place.time_us; });
+  run.files.push_back("log");
+  run.nodes = log.nodes;
+  run.nodes[0].file = 1;
+  return found_in(script, complete);
+}
 
 /// A log in which mote 2 has joined the sink of island 11; what follows comes from 12 ms on.
 inline constexpr const char* kJoined = R"(%rtr 1  %profile paper  %tick ms
