@@ -287,9 +287,11 @@ class Parser {
   // Tells of the headers that were added to a case, and keeps no notes.
   void tell_headers(std::vector<Item>& items, std::size_t begin) {
     for (std::size_t i = begin; i < items.size(); ++i) listener_->header(*items[i].as<Header>());
-    std::erase_if(items, [](const Item& item) {
+    const auto is_note = [](const Item& item) {
       return std::holds_alternative<NoteHeader>(item.as<Header>()->what);
-    });
+    };
+    const auto added = items.begin() + static_cast<std::ptrdiff_t>(begin);
+    items.erase(std::remove_if(added, items.end(), is_note), items.end());
   }
 
   Parsed& out_;

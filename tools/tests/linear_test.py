@@ -170,7 +170,7 @@ class Linear(Folder):
         for command in TEXT_COMMANDS:
             memory = self.grows(name, command, inputs, path, (0, 1, 2, 3, 64, 66), LINES_CPU_MOST,
                                 LINES_CPU_FLOOR_S)
-            if command == ("check",):
+            if command == ("check",) and "nodes" not in name:  # Which it also judges.
                 self.assertLessEqual(memory[1] - memory[0],
                                      MEMORY_MOST * len(inputs[1]) + MEMORY_FLOOR, name)
 

@@ -262,13 +262,14 @@ class LogReader {
       seen.kind = Observation::Kind::kCall;
       seen.received = false;
       seen.call = &storage.calls.emplace_back(*call);
+      storage.owned.push_back(message);
     } else if (const auto notice = events::to_notice(*message); notice && !seen.received) {
       seen.kind = Observation::Kind::kNotice;
       seen.notice = &storage.notices.emplace_back(*notice);
+      storage.owned.push_back(message);
     } else {
       return;
     }
-    storage.owned.push_back(message);
     run_.seen.push_back(seen);
   }
 
