@@ -416,7 +416,7 @@ void add_run(cli::Command& app) {
   sub.add_option("--loss", options->loss_percent, "Lose this many percent of the incoming frames")
       .between(0, 100);
   sub.add_option("--seed", options->seed, "Seed waits, losses and the first number")
-      .between(0, UINT32_MAX);
+      .between(std::uint64_t{0}, std::uint64_t{UINT32_MAX});
   cli::add_write_options(sub, options->write, "Keep all frames in this pcapng file", true, true);
   sub.add_option(
          "--space", options->space,

@@ -92,13 +92,15 @@ class Zep(LiveTest):
         now = time.time()
         # The stamps of motes 5 and 6 say another order. That of one for mote 9 holds.
         for mote, dest, late in ((5, 1, 0), (6, 1, 0.02), (7, 9, 0.05)):
-            frame = bytes.fromhex(f"4188{mote:02x}2200{dest:02x}00{mote:02x}003f1c"
+            frame = bytes.fromhex(f"6188{mote:02x}2200{dest:02x}00{mote:02x}003f1c"
                                   f"000bfffd000b00{mote:02x}00000703030a55")
             station.send(zep(frame + fcs(frame), device=mote, seconds=now - late))
+            if dest == 1:  # What waits together is taken by its stamps.
+                self.assertEqual(station.socket.recv(128)[32:35], bytes([2, 0, mote]))
         time.sleep(0.5)
         self.assertEqual(sink.end()[0], 0)
         times = {record["frame"]["src"]: record["time"] for record in lines_of(kept)
-                 if record["framing"] == "radio"}
+                 if record["message"] != "mac_ack"}
         self.assertLess(times[5], times[6])
         self.assertLess(times[7], times[5])
 

@@ -32,7 +32,6 @@ constexpr std::int64_t kLateMostNs = 100'000'000;
 
 constexpr std::uint16_t kAll = 0xFFFF;
 constexpr std::uint16_t kNobody = 0;
-constexpr std::int64_t kStepNs = 1'000;  // What capture files tell apart.
 constexpr std::size_t kAckBytes = tinyos::MacAckView::kMaxSizeBytes;
 constexpr std::size_t kHeader = reflect::kRadioIHeaderBytes;
 constexpr std::int64_t kByteNs = 32'000;
@@ -115,14 +114,16 @@ void VirtualRadio::handle(Bytes datagram) {
   const std::uint16_t dest = kept.size() < kHeader ? kNobody : Mac::DestAt::load(kept.data());
   const bool is_for_us = dest == settings_.address || dest == kAll;
   if (is_for_us) {
-    packet.time_ns = std::max(packet.time_ns, std::min(came_ns_ + kStepNs, wall_ns()));
-    came_ns_ = packet.time_ns;
+    // Not beyond the end of a link ack; a wrong clock's stamp may be.
+    const std::int64_t least_ns = std::min(taken_ns_, wall_ns() + kLongestFrameNs);
+    packet.time_ns = std::max(packet.time_ns, least_ns);
   }
   user_.on_air(packet);
   // A frame is heard at its end, which is also the earliest time of what it causes.
   const std::int64_t end_ns =
       packet.time_ns + static_cast<std::int64_t>(kept.size() + kPreambleAndFcs) * kByteNs;
   heard_ns_ = end_ns;
+  if (is_for_us) taken_ns_ = end_ns;
   if (packet.error.fault != Fault::kNone) return;
   const bool lost = std::bernoulli_distribution(settings_.loss)(random_);
   if (kept.size() < kAckBytes) return;
@@ -148,6 +149,7 @@ void VirtualRadio::handle(Bytes datagram) {
     std::uint8_t room[kAckBytes];
     tinyos::MacAckLayout::store(ack, room);
     put(Bytes(room, sizeof room), end_ns + kTurnaroundNs);
+    taken_ns_ += kTurnaroundNs + std::int64_t{kAckBytes + kPreambleAndFcs} * kByteNs;
     taken_ = {};
   }
   const std::int64_t early_ns = end_ns - wall_ns();

@@ -64,7 +64,7 @@ class VirtualRadio {
   lines::SteadyTime next_;     // When the state ends.
   lines::SteadyTime taken_{};  // Others wait for a link ack until then.
   std::int64_t heard_ns_ = 0;  // The end of the frame that came last, by its stamp.
-  std::int64_t came_ns_ = 0;   // The stamp of the last frame for this end.
+  std::int64_t taken_ns_ = 0;  // The end of the last frame for this end, and of its link ack.
   std::uint8_t dsn_ = 0;
   std::uint32_t sequence_ = 0;
 };
