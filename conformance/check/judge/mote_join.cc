@@ -342,10 +342,7 @@ void MoteJoins::ack_join(std::uint16_t mote, const Observation& seen, const AckJ
     next.confirmed = next.confirmed || confirmed;
     next_.push_back(next);
   }
-  if (next_.empty()) {
-    refuse_ack(mote, seen, ack);
-    return;
-  }
+  if (next_.empty()) return refuse_ack(mote, seen, ack);
   judge_offer(mote, seen.place, next_);
   const std::uint8_t count = next_[0].acks_seen;
   context_.findings.kept(count > 1 ? "J4-REPEAT"_rule : "J4-CONTENT"_rule);
