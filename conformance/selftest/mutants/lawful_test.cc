@@ -1,5 +1,5 @@
-// No golden trace fails on a lawful variant of the machine. RUBRIC_ALL_RUNS tries more of those that
-// chance makes.
+// No golden trace fails on a lawful variant of the machine. RUBRIC_ALL_RUNS tries more of those
+// that chance makes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
