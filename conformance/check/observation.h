@@ -119,9 +119,10 @@ struct LoggedNode {
 /// How well the clock of a log is known that lies beside captures.
 struct LogClock {
   std::uint32_t file = 0;
-  bool known = true;            ///< False: nothing ties it to that of the captures.
-  std::int64_t earlier_us = 0;  ///< Its lines may have come earlier than they say by so much,
-  std::int64_t later_us = 0;    ///< or later.
+  bool known = true;             ///< False: nothing ties it to that of the captures.
+  std::int64_t earlier_us = 0;   ///< Its lines may have come earlier than they say by so much,
+  std::int64_t later_us = 0;     ///< or later.
+  std::uint64_t step_frame = 0;  ///< The first line after a step of it; 0: there is none.
 };
 
 /// The times between which a frame of a file without stamps must lie, by frames that other files

@@ -170,7 +170,28 @@ class Alignment {
   }
 
   ClockFit fitted(std::uint32_t a, std::uint32_t b) {
-    return fit_clock(run_, common_of(a, b), options_);
+    const CommonFrames common = common_of(a, b);
+    if (!goes_on(a, b, common)) return fit_clock(run_, common, options_);
+    ClockFit fit;
+    fit.clocks = Clocks::kAgree;
+    fit.frames = common.pairs.size();
+    return fit;
+  }
+
+  // Returns whether one file begins where the other ends, as when a recorder begins another, and
+  // what they have in common was under way then: that it waited says nothing about their clocks.
+  bool goes_on(std::uint32_t a, std::uint32_t b, const CommonFrames& common) const {
+    const auto all = [](const File& file) { return file.radio && file.serial; };
+    const auto after = [&](std::uint32_t first, std::uint32_t next) {
+      return files_[next].first_us >= files_[first].last_us;
+    };
+    if (!all(files_[a]) || !all(files_[b]) || !(after(a, b) || after(b, a))) return false;
+    return !common.pairs.empty() && std::ranges::all_of(common.pairs, [&](const Pair& pair) {
+      const std::int64_t ahead_us =
+          run_.seen[pair.b].place.time_us - run_.seen[pair.a].place.time_us;
+      return pair.lag_sign != 0 && pair.lag_sign * ahead_us >= pair.lag_min_us &&
+             pair.lag_sign * ahead_us <= options_.response_us;
+    });
   }
 
   // Returns the frames that two files with stamps have in common. A line is compared with all
@@ -263,7 +284,7 @@ class Alignment {
     } else {
       fit.why = "no capture has time stamps";
     }
-    put_log(timed == files_.end() ? 0 : a, b, fit);
+    put_log(timed == files_.end() ? 0 : a, b, fit, common.pairs);
     if (fit.clocks != Clocks::kUnsure) join_lines(passed);
   }
 
@@ -294,7 +315,7 @@ class Alignment {
           rest, {}, [&](std::uint32_t b) { return common[b].pairs.size(); });
       const std::uint32_t b = *next;
       rest.erase(next);
-      put_log(first, b, fit_log(run_, common[b], options_, own_zero_));
+      put_log(first, b, fit_log(run_, common[b], options_, own_zero_), common[b].pairs);
       join_lines(common[b].pairs);
       placed.push_back(b);
     }
@@ -315,7 +336,8 @@ class Alignment {
     for (Observation& seen : run_.seen) seen.tap = tap[seen.tap];
   }
 
-  void put_log(std::uint32_t a, std::uint32_t b, const ClockFit& fit) {
+  void put_log(std::uint32_t a, std::uint32_t b, const ClockFit& fit,
+               const std::vector<Pair>& pairs) {
     if (fit.clocks == Clocks::kDiffer) {
       move_log(run_, b, [&](std::int64_t time_us) { return fit.moved(time_us); });
       say_moved(a, b, fit);
@@ -323,7 +345,9 @@ class Alignment {
       run_.facts.push_back(run_.files[b] + " is not aligned with " + run_.files[a] + ": " +
                            fit.why);
     }
-    run_.logs.push_back({b, fit.clocks != Clocks::kUnsure, fit.earlier_us, fit.slack_us});
+    const bool known = fit.clocks != Clocks::kUnsure;
+    const std::uint64_t step = known ? 0 : step_of_log(run_, b, pairs, options_);
+    run_.logs.push_back({b, known, fit.earlier_us, fit.slack_us, step});
   }
 
   // Orders a file without stamps among those on the air's clock.

@@ -1,6 +1,8 @@
 #include "conformance/check/align/align_logs.h"
 
 #include <algorithm>
+#include <cstdlib>
+#include <iterator>
 #include <map>
 
 #include "conformance/check/message.h"
@@ -144,10 +146,76 @@ class LogSightings {
   std::uint32_t index_ = 0;
 };
 
+constexpr std::size_t kSideMin = 3;       // Events on either side of a step.
+constexpr std::ptrdiff_t kFarShare = 10;  // Of all events so many may lie elsewhere.
+constexpr int kJumpsMax = 16;
+
+// An event: its stamp in a log, and how much later that is than its stamp in the other file.
+struct LogEvent {
+  std::int64_t at_us = 0;
+  std::int64_t ahead_us = 0;
+};
+using LogEvents = std::vector<LogEvent>;
+
+std::int64_t usual_ahead(LogEvents::const_iterator from, LogEvents::const_iterator to) {
+  std::vector<std::int64_t> ahead;
+  for (auto at = from; at != to; ++at) ahead.push_back(at->ahead_us);
+  const auto middle = ahead.begin() + static_cast<std::ptrdiff_t>(ahead.size() / 2);
+  std::nth_element(ahead.begin(), middle, ahead.end());
+  return *middle;
+}
+
+// Returns the line after the longest gap between two stamps, if it is longer than `longest_us`.
+std::uint64_t line_after_gap(const Run& run, std::uint32_t log, std::int64_t from_us,
+                             std::int64_t to_us, std::int64_t longest_us) {
+  const Place* last = nullptr;
+  std::uint64_t line = 0;
+  for (const Observation& seen : run.seen) {
+    const std::int64_t time_us = seen.place.time_us;
+    if (seen.place.file != log || time_us < from_us || time_us > to_us) continue;
+    if (last != nullptr && time_us - last->time_us > longest_us) {
+      longest_us = time_us - last->time_us;
+      line = seen.place.frame;
+    }
+    last = &seen.place;
+  }
+  return line;
+}
+
 }  // namespace
 
 void add_logged(const Run& run, std::vector<std::vector<Sighting>>& sightings) {
   LogSightings(run, sightings).add();
+}
+
+std::uint64_t step_of_log(const Run& run, std::uint32_t log, const std::vector<Pair>& pairs,
+                          const AlignOptions& options) {
+  LogEvents events;
+  for (const Pair& pair : pairs) {
+    const std::int64_t a_us = run.seen[pair.a].place.time_us;
+    const std::int64_t b_us = run.seen[pair.b].place.time_us;
+    if (a_us != kNoStamp && b_us != kNoStamp) events.push_back({b_us, b_us - a_us});
+  }
+  if (events.size() < 2 * kSideMin) return 0;
+  std::ranges::stable_sort(events, {}, &LogEvent::at_us);
+  const std::int64_t most_us = 2 * options.response_us;
+  const auto end = events.end() - kSideMin;
+  int jumps = 0;
+  for (auto at = events.begin() + kSideMin; at <= end && jumps < kJumpsMax; ++at) {
+    if (at->ahead_us - (at - 1)->ahead_us <= most_us) continue;
+    ++jumps;
+    const std::int64_t before_us = usual_ahead(events.begin(), at);
+    const std::int64_t after_us = usual_ahead(at, events.end());
+    std::ptrdiff_t far = 0;
+    for (auto one = events.begin(); one != events.end(); ++one) {
+      const std::int64_t usual_us = one < at ? before_us : after_us;
+      far += std::abs(one->ahead_us - usual_us) > most_us ? 1 : 0;
+    }
+    const std::int64_t step_us = after_us - before_us;
+    if (step_us <= most_us || kFarShare * far > std::ssize(events)) continue;
+    return line_after_gap(run, log, (at - 1)->at_us, at->at_us, step_us - most_us);
+  }
+  return 0;
 }
 
 }  // namespace rubric::check

@@ -11,6 +11,7 @@
 #include <optional>
 #include <vector>
 
+#include "conformance/check/align/align.h"
 #include "conformance/check/align/align_frames.h"
 #include "conformance/check/observation.h"
 
@@ -20,6 +21,11 @@ namespace rubric::check {
 /// (Common::kLogged), and the frames of captures that may be their causes or effects; and those
 /// that tie logs to each other (Common::kPassed).
 void add_logged(const Run& run, std::vector<std::vector<Sighting>>& sightings);
+
+/// Returns the first line after a step forth of the clock of a log, which nearly all `pairs` of it
+/// and others show, and a gap between its lines; 0 if there is none.
+std::uint64_t step_of_log(const Run& run, std::uint32_t log, const std::vector<Pair>& pairs,
+                          const AlignOptions& options);
 
 /// Moves the times that logs state of their nodes; those of one log, if a file is named.
 template <class Moved>

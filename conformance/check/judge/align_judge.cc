@@ -165,16 +165,8 @@ Report judge_each_gap(const Run& run, const Options& options) {
   Report late = Judge(with_late_steps(run), options).judge();
   const std::set<Name> soon_blamed = blamed_in(report);
   const std::set<Name> late_blamed = blamed_in(late);
-  const std::int64_t first_us = run.steps.front().time_us;
-  // Nothing ties the clock of a log to one that stepped.
-  const auto logged = [&](const Finding& finding) {
-    return finding.place.time_us >= first_us &&
-           std::any_of(run.nodes.begin(), run.nodes.end(),
-                       [&](const LoggedNode& node) { return node.name == finding.node; });
-  };
   for (Finding& finding : report.findings) {
-    if (!blames(finding)) continue;
-    if (late_blamed.contains(name_of(finding)) && !logged(finding)) continue;
+    if (!blames(finding) || late_blamed.contains(name_of(finding))) continue;
     finding.severity = Severity::kInconclusive;
   }
   std::map<std::pair<std::uint32_t, std::uint64_t>, const Place*> places;
@@ -247,31 +239,28 @@ struct Blamed {
   }
 };
 
-// Returns what each log shows by itself: however far its clock is off, its own lines fit it.
+// Returns what each log shows by itself: however far its clock is off, its own lines fit it, and
+// where it stepped, those on either side of the step.
 Blamed blamed_alone(const Run& run, Options options) {
   options.sniffer_complete = options.start_cold = false;  // Said of all of them together.
   Blamed out;
-  for (const LogClock& log : run.logs) {
+  const auto add = [&](const LogClock& log, std::uint64_t from, std::uint64_t to) {
     Run alone = run;
     alone.logs.clear();
-    std::erase_if(alone.seen, [&](const Observation& seen) { return seen.place.file != log.file; });
+    std::erase_if(alone.seen, [&](const Observation& seen) {
+      const Place& place = seen.place;
+      return place.file != log.file || place.frame < from || place.frame >= to;
+    });
     std::erase_if(alone.nodes, [&](const LoggedNode& node) { return node.file != log.file; });
+    for (LoggedNode& node : alone.nodes) node.whole = node.whole && log.step_frame == 0;
     merge(alone);
     std::ranges::move(judge(alone, options).findings, std::back_inserter(out.findings));
+  };
+  for (const LogClock& log : run.logs) {
+    add(log, 0, log.step_frame == 0 ? UINT64_MAX : log.step_frame);
+    if (log.step_frame != 0) add(log, log.step_frame, UINT64_MAX);
   }
   return out;
-}
-
-// Returns the log of the node that a finding names; nullptr if it has none.
-const LoggedNode* logged_of(const Run& run, const Finding& finding) {
-  const auto its = std::ranges::find_if(run.nodes, [&](const LoggedNode& node) {
-    if (node.role == machine::Role::kMote) return finding.node == "mote " + number(node.id);
-    const bool sink = node.role == machine::Role::kSink;
-    const std::string role = sink ? "sink" : "base station";
-    return finding.node == role + " of island " + number(node.island) ||
-           (finding.node.starts_with(role) && node.island == kNoIsland);
-  });
-  return its != run.nodes.end() ? &*its : nullptr;
 }
 
 // Returns the findings of captures about nodes whose logs had not begun then, or were over. Nobody
@@ -290,9 +279,10 @@ std::vector<Finding*> unlogged(const Run& run, Report& report) {
     // An absence that no frame shows is judged where it is found, by how far the log goes.
     if (!blames(finding) || !finding.place.timed() || finding.place.frame == 0) continue;
     if (logs.contains(finding.place.file)) continue;
-    const LoggedNode* const node = logged_of(run, finding);
-    if (node == nullptr || node->hearing || !logs.contains(node->file)) continue;
-    const auto [from_us, to_us] = logs.at(node->file);
+    if (finding.device >= run.nodes.size()) continue;
+    const LoggedNode& node = run.nodes[finding.device];
+    if (node.hearing || !logs.contains(node.file)) continue;
+    const auto [from_us, to_us] = logs.at(node.file);
     const std::int64_t at_us = finding.place.time_us;
     if (at_us < from_us || at_us > to_us) out.push_back(&finding);
   }

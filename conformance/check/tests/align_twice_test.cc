@@ -301,5 +301,30 @@ TEST(AlignTwice, OneLineTwice) {
   }
 }
 
+// A recorder that begins another file leaves its clock alone. What was under way then comes late.
+TEST(AlignTwice, AFileThatGoesOnWhereAnotherEnds) {
+  Script script;
+  script.join(0, 11, 2, 100).join(200, 11, 3, 200).join(400, 11, 4, 300);
+  for (std::uint16_t mote = 2; mote < 5; ++mote) {
+    script.net(1000 + 15 * mote, mote, 1, update(mote, 5));
+  }
+  const std::size_t cut = script.run.seen.size();
+  for (std::uint16_t mote = 2; mote < 5; ++mote) {
+    script.up(1200 + 15 * mote, update(mote, 5).forwarded());
+    script.net(1207 + 15 * mote, mote, 1, update(mote, 6));
+    script.up(1212 + 15 * mote, update(mote, 6).forwarded());
+  }
+  for (const int hours : {0, 1}) {
+    check::Run run = script.run;
+    run.files = {"1", "2"};
+    for (std::size_t i = cut; i < run.seen.size(); ++i) {
+      run.seen[i].place.file = 1;
+      run.seen[i].place.time_us += hours * 3'600'000'000;
+    }
+    align(run, {});
+    EXPECT_THAT(run.facts, testing::SizeIs(hours)) << hours;
+  }
+}
+
 }  // namespace
 }  // namespace rubric::check::align_twice_test

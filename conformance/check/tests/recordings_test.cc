@@ -248,7 +248,8 @@ TEST(AlignLogs, ALogThatSaysSomethingElseThanTheCaptureIsFound) {
   EXPECT_EQ(report.verdict, Verdict::kInconclusive);
 }
 
-// A log whose writer was killed, or begun late, and a capture that begins after the log.
+// A log whose writer was killed, or begun late, and a capture that begins after the log or ends
+// before it.
 TEST(AlignLogs, NobodyIsBlamedForWhatAShortLogDoesNotSay) {
   for (const char* scenario : {"open_door", "inter_island", "hospital"}) {
     const Recorded run = recorded(scenario);
@@ -266,6 +267,9 @@ TEST(AlignLogs, NobodyIsBlamedForWhatAShortLogDoesNotSay) {
       };
       EXPECT_EQ(broken_in(judge(read_apart(run.capture, 1, late, {run.log}), {})), "")
           << scenario << ", the capture from " << cut;
+      const auto early = [&](Packet& packet) { return late(packet) < 0 ? 0 : -1; };
+      EXPECT_EQ(broken_in(judge(read_apart(run.capture, 1, early, {run.log}), complete())), "")
+          << scenario << ", the capture until " << cut;
     }
   }
 }
@@ -291,6 +295,15 @@ TEST(AlignLogs, WhatAShortLogShowsIsFound) {
   const auto early = [&](int tick, const std::string&) { return tick > 5000 ? -1 : tick; };
   const check::Run both = read_apart(run.capture, 1, shortened, {retimed(run.log, early)});
   EXPECT_EQ(broken_in(judge(both, complete())), "WIRE-AM-LENGTH");
+}
+
+// On either side of a step the log of a node shows what it does; across it nobody knows.
+TEST(AlignLogs, ALogWhoseClockStepsForth) {
+  const Recorded run = recorded("hospital");
+  const auto step = [](int tick, const std::string&) { return tick > 700 ? tick + 3072 : tick; };
+  EXPECT_EQ(broken_in(judged({run.capture, retimed(run.log, step)})), "");
+  const std::string again = run.log + "@10300 m8 > app joined(address=11:8 result=success)\n";
+  EXPECT_EQ(broken_in(judged({run.capture, retimed(again, step)})), "J5-ONCE");
 }
 
 TEST(AlignLogs, AJoinThatFailsAtOnceIsFound) {
