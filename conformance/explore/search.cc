@@ -394,7 +394,7 @@ class Search {
 
   Result finish() {
     Result result{.progress = progress(), .violation = shortest_violation()};
-    result.limit = result.violation ? "" : limit_;
+    result.limit = result.violation && limit_ != kNoMemory ? "" : limit_;
     result.complete = !result.violation && *limit_ == '\0';
     double hashed = 0;
     for (const auto& worker : workers_) {

@@ -159,7 +159,7 @@ struct Verdict {
   const char* text = "";
   int exit_code = cli::kExitClean;
   Mask never = 0;     ///< Goals that should have been reached.
-  std::string limit;  ///< Why nothing was decided.
+  std::string limit;  ///< Why nothing was decided, or the search ended before its time.
 };
 
 // Returns options that would make more happen in the network.
@@ -181,7 +181,11 @@ std::string ways_to_widen(const explore::Options& network) {
 
 Verdict judge(const ExploreOptions& options, const explore::Options& network,
               const Result& result) {
-  if (result.violation) return {"broken", cli::kExitFindings, 0, {}};
+  if (result.violation) {
+    const bool early = *result.limit != '\0';  // Perhaps a shorter way lies where it did not look.
+    return {"broken", cli::kExitFindings, 0,
+            early ? fmt::format("the search ended early: {}", result.limit) : ""};
+  }
   if (!result.complete) return {"inconclusive", cli::kExitIncomplete, 0, result.limit};
   if (!options.flaw.empty() && !result.step_acted) {
     return {"inconclusive", cli::kExitIncomplete, 0,

@@ -133,6 +133,8 @@ class Faults(testing.Folder):
                     tried[call] = tried.get(call, 0) + 1
                     self.assertGreaterEqual(done.returncode, 0, (what, done.stderr))
                     now = timeless(self.old.read_bytes())
+                    if b"the search ended early: more memory" in done.stdout:
+                        continue  # What was found by then is told, and that it may not be all.
                     if done.returncode == good.returncode:
                         # What failed was not needed, or was done in another way.
                         self.assertEqual(timeless(done.stdout), timeless(good.stdout), what)

@@ -210,16 +210,19 @@ class Generate(Folder):
             self.assertEqual(record["am"] is None, not form)
             for whole in (record, {k: v for k, v in record.items() if k != "raw"}):
                 self.shows(("encode", "--spec", spec), raw + "\n", stdin=json.dumps(whole))
-            record["fields"]["kind"] = 9
-            self.refused(("encode", "--spec", spec), 'fields.kind: given 9, but "raw" says',
+            edited = "dsn" if form else "head"
+            record["fields"][edited] = 9
+            self.refused(("encode", "--spec", spec), f'fields.{edited}: given 9, but "raw" says',
                          code=66, stdin=json.dumps(record))
         self.refused(("encode", "--spec", spec, "--as", "one"), "headers of their own")
         file, wanted = self.generate("pcapng", "--spec", str(spec), "--count", "300")
         shown = run("decode", "--spec", str(spec), "--format", "jsonl", str(file), code=1).stdout
-        made = run("encode", "--spec", str(spec), input=shown).stdout.decode()
-        self.assertEqual([one["raw"] for one in wanted if one["verdict"] == "valid"],
-                         [line.replace(" ", "").lower() for line, one in
-                          zip(made.splitlines(), wanted, strict=True) if one["verdict"] == "valid"])
+        valid = [(line, one["raw"]) for line, one in zip(shown.splitlines(), wanted, strict=True)
+                 if one["verdict"] == "valid"]
+        self.assertGreater(len(valid), 50)
+        made = run("encode", "--spec", str(spec), input=b"\n".join(line for line, _ in valid))
+        self.assertEqual([raw for _, raw in valid],
+                         made.stdout.decode().replace(" ", "").lower().splitlines())
 
     def assert_refused(self, text, *arguments, code=64):
         said = run("generate", *arguments, code=code).stderr.decode()

@@ -3,7 +3,7 @@
 
 import sys
 
-from mote import Mote
+from mote import SETTINGS, Mote
 from words import text_of
 
 
@@ -23,8 +23,7 @@ class Adapter:
             return "hello rct/1 rubric_python_mote 1.0 roles=mote time=virtual"
         if command == "reset" and words[0] == "mote":
             settings = dict(word.split("=") for word in words[1:])
-            known = {"id", "island", "channels", "seed", "profile", "join_requests", "ack_joins"}
-            if unknown := settings.keys() - known:
+            if unknown := settings.keys() - SETTINGS:
                 return f"unsupported {' '.join(sorted(unknown))}"
             self.now = 0
             self.mote = Mote(self, settings)

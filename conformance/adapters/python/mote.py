@@ -19,6 +19,8 @@ SINK_AM = 1
 REFUSED = 0xFFFF
 NEW, OLD, UNKNOWN_CHANNEL = 0, 1, 2
 
+# What a mote can be built with; it sends one ack_join, so it keeps any number of these.
+SETTINGS = {"id", "island", "channels", "seed", "profile", "join_requests", "ack_joins"}
 REQUESTS = 4             # The letter of "fires for four times" (decision 101).
 JOIN_PERIOD = 500
 ACK_TIMEOUT = 1000
