@@ -8,6 +8,9 @@ happens, and calls run_due() when due() says so. What the mote does, it tells it
 
 from words import Address, call_of    # And ChannelId.
 
+# What `reset` may say. Add a parameter, as "join_requests", if your mote can be built with it.
+SETTINGS = {"id", "island", "channels", "seed", "profile"}
+
 
 class Mote:
     def __init__(self, world, settings):
