@@ -317,6 +317,24 @@ const std::unordered_set<std::string>& known_requirements() {
   return known;
 }
 
+// The headers of a file or a case.
+struct Said {
+  bool version = false, profile = false, tick = false, seed = false, values = false;
+  std::unordered_set<std::string> nodes, links;
+};
+
+// The case that is read.
+struct Now {
+  const Case* one = nullptr;
+  Said said;
+  bool lines = false;
+  const Ends* ends = nullptr;  // Once they were asked for.
+  std::optional<Ends> own;     // Unless those of the head are its.
+  std::unordered_map<std::string, Place> labels;
+  BoundNames bound{kSeeded};
+  std::int64_t latest = 0;
+};
+
 class FileCheck : public Listener {
  public:
   FileCheck(const File& file, const Report& report) : file_(file), report_(report) {}
@@ -366,12 +384,6 @@ class FileCheck : public Listener {
   }
 
  private:
-  // The headers of a file or a case.
-  struct Said {
-    bool version = false, profile = false, tick = false, seed = false, values = false;
-    std::unordered_set<std::string> nodes, links;
-  };
-
   void once(bool& said, const Header& header, const char* what) {
     if (std::exchange(said, true)) report_(header.place, std::string(what) + " is given twice");
   }
@@ -520,18 +532,6 @@ class FileCheck : public Listener {
       report_(line.place, quoted(line.node) + " is not on the link " + quoted(line.link));
     }
   }
-
-  // The case that is read.
-  struct Now {
-    const Case* one = nullptr;
-    Said said;
-    bool lines = false;
-    const Ends* ends = nullptr;  // Once they were asked for.
-    std::optional<Ends> own;     // Unless those of the head are its.
-    std::unordered_map<std::string, Place> labels;
-    BoundNames bound{kSeeded};
-    std::int64_t latest = 0;
-  };
 
   const Ends& ends() {
     if (now_->ends) return *now_->ends;
