@@ -172,7 +172,7 @@ void Announcements::refuse_report(SinkWatch& sink, PairWatch& watch, const Place
   // The request to which the ack belongs may have escaped as well.
   std::int64_t since = context_.run.start_us;
   if (has_ack && watch.asked) since = std::min(watch.ack.time_us, watch.request.time_us);
-  Severity severity = context_.without_mote(mote_am, since, at.time_us);
+  Severity severity = context_.without_mote(mote_am, since, at.time_us, sink.device);
   const bool may_have_come = !context_.options.start_cold || context_.lossy_air;
   if (!has_ack && may_have_come) severity = Severity::kInconclusive;
   if (h.member) {

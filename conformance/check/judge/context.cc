@@ -505,9 +505,12 @@ Severity Context::without_copy(std::uint16_t sender, const Place& first,
   return (late || told) && !lossy_air ? severity : std::min(severity, Severity::kInconclusive);
 }
 
-Severity Context::without_mote(std::uint16_t am, std::int64_t from_us, std::int64_t to_us) const {
-  Severity out = mote_of_am[am] == kNobody ? without(kNobody, from_us, to_us) : Severity::kFail;
-  for_motes(am, [&](std::uint16_t mote) { out = std::min(out, without(mote, from_us, to_us)); });
+Severity Context::without_mote(std::uint16_t am, std::int64_t from_us, std::int64_t to_us,
+                               std::uint16_t node) const {
+  const bool nobody = mote_of_am[am] == kNobody;
+  Severity out = nobody ? without(kNobody, from_us, to_us, node) : Severity::kFail;
+  for_motes(
+      am, [&](std::uint16_t mote) { out = std::min(out, without(mote, from_us, to_us, node)); });
   return out;
 }
 

@@ -201,7 +201,8 @@ struct Context {
   /// Returns the same where Y is the link's own copy of a frame that `sender` sent at `first`.
   Severity without_copy(std::uint16_t sender, const Place& first, std::int64_t now_us) const;
   /// Returns the same where any mote of that address may have sent Y.
-  Severity without_mote(std::uint16_t am, std::int64_t from_us, std::int64_t to_us) const;
+  Severity without_mote(std::uint16_t am, std::int64_t from_us, std::int64_t to_us,
+                        std::uint16_t node = kNobody) const;
   /// Returns the same where Y may lie any time before, even before the capture.
   Severity without_ever(std::uint16_t cause, std::int64_t to_us) const;
 

@@ -230,7 +230,7 @@ void JoinCalls::told(std::uint16_t mote, const Observation& seen, const machine:
     const bool known = member && (h.acks_seen > 0 || foreign);
     context_.report(
         member ? "J5-SUCCESS"_rule : "J5-ACCEPT"_rule,
-        known || wrong ? Severity::kFail : context_.without(kNobody, h.first_request_us, now),
+        known || wrong ? Severity::kFail : context_.without(kNobody, h.first_request_us, now, mote),
         seen.place, mote, std::move(said));
     set = before;
     return;

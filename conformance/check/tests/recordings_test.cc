@@ -254,9 +254,9 @@ TEST(AlignLogs, ALogThatSaysSomethingElseThanTheCaptureIsFound) {
 // A log whose writer was killed, or begun late, and a capture that begins after the log or ends
 // before it.
 TEST(AlignLogs, NobodyIsBlamedForWhatAShortLogDoesNotSay) {
-  for (const char* scenario : {"open_door", "inter_island", "hospital"}) {
+  for (const char* scenario : {"open_door", "inter_island", "hospital", "timeline"}) {
     const Recorded run = recorded(scenario);
-    for (const int cut : {2500, 4100, 6000}) {
+    for (const int cut : {2500, 4100, 5500, 6000}) {
       const auto head = [&](int tick, const std::string&) { return tick > cut ? -1 : tick; };
       const auto tail = [&](int tick, const std::string&) { return tick < cut ? -1 : tick; };
       EXPECT_EQ(broken_in(judged({run.capture, retimed(run.log, head)})), "")
