@@ -26,7 +26,7 @@ from serial_testing import held_port
 HERE = pathlib.Path(__file__).resolve().parent
 MISTAKE = "reads_numbers_backwards"
 ITS_RULE = "T2-CONTENT"
-PARTS = 27
+PARTS = 14
 PARTS_OF_A_RULE = 9  # Of its few cases each gets some.
 # They last two minutes each where time is real; java_base_station_suite_test runs them.
 LONG = "many.*"
@@ -85,7 +85,7 @@ def main():
         wrong = 0
         programs = {mistake: build(javac, folder, mistake) for mistake in ("", MISTAKE)}
         # A station at a line waits most of the time, so many parts run at once.
-        with concurrent.futures.ThreadPoolExecutor(max_workers=PARTS) as pool:
+        with concurrent.futures.ThreadPoolExecutor(max_workers=2 * PARTS + PARTS_OF_A_RULE) as pool:
             def started(mistake, run, parts, *which):
                 return [pool.submit(run, rubric, java, programs[mistake],
                                     folder / f"{mistake}{run.__name__}{i}.json",
