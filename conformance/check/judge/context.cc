@@ -509,8 +509,8 @@ Severity Context::without_mote(std::uint16_t am, std::int64_t from_us, std::int6
                                std::uint16_t node) const {
   const bool nobody = mote_of_am[am] == kNobody;
   Severity out = nobody ? without(kNobody, from_us, to_us, node) : Severity::kFail;
-  for_motes(
-      am, [&](std::uint16_t mote) { out = std::min(out, without(mote, from_us, to_us, node)); });
+  for_motes(am,
+            [&](std::uint16_t mote) { out = std::min(out, without(mote, from_us, to_us, node)); });
   return out;
 }
 
