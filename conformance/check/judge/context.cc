@@ -444,8 +444,8 @@ bool Context::crowded(std::uint16_t node, std::int64_t time_us) const {
   const Device& its = device(node);
   if (its.whole) {
     const bool mote = its.role == machine::Role::kMote;
-    const std::size_t room = mote ? machine::kRadioRoom : machine::kSerialRoom;
-    return backlog(node, time_us) >= static_cast<int>(std::min(room, terms(node).buffers));
+    const machine::Link line = mote ? machine::Link::kRadio : machine::Link::kSerial;
+    return backlog(node, time_us) >= static_cast<int>(room(node, line));
   }
   // A message that came at most the response time before may still be in a buffer.
   const auto from =

@@ -16,6 +16,7 @@
 #include "conformance/check/terms.h"
 #include "conformance/machine/actions.h"
 #include "conformance/machine/join.h"
+#include "conformance/machine/state.h"
 #include "conformance/machine/ticks.h"
 
 namespace rubric::check {
@@ -86,6 +87,11 @@ struct Context {
     return node < logged_.size() ? logged_[node] : unlogged_;  // A log's are the first devices.
   }
   const machine::Profile& profile(std::uint16_t node) const { return terms(node).profile; }
+  /// Returns how many messages a buffer for this line holds at least (decision 122).
+  std::size_t room(std::uint16_t node, machine::Link line) const {
+    return std::min(line == machine::Link::kRadio ? machine::kRadioRoom : machine::kSerialRoom,
+                    terms(node).buffers);
+  }
   /// Returns how early a timer may look (decision 128). Ticks of logs are rounded to microseconds.
   std::int64_t early_us(std::uint16_t node) const {
     return machine::us_of(profile(node).early_ticks) + kRoundedUs;

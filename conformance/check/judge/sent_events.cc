@@ -11,13 +11,6 @@ namespace rubric::check {
 using machine::Link;
 using machine::Role;
 
-namespace {
-
-constexpr std::size_t kRadioOut = 4;  // Messages that a buffer holds at least (decision 122).
-constexpr std::size_t kSerialOut = 2;
-
-}  // namespace
-
 void Originals::ack_heard(std::uint16_t node, const Net& ack, std::uint16_t acked, Wait wait) {
   Ring<Sent, kRoom>& ring = sent_[node];
   for (std::size_t i = 0; i < ring.size(); ++i) {
@@ -299,8 +292,7 @@ std::size_t Originals::waiting(std::uint16_t node, Link line) const {
 }
 
 bool Originals::full(std::uint16_t node, Link line) const {
-  const std::size_t room = line == Link::kRadio ? kRadioOut : kSerialOut;
-  return waiting(node, line) >= std::min(room, context_.terms(node).buffers);
+  return waiting(node, line) >= context_.room(node, line);
 }
 
 // Says that send refused a message although fewer of its application's messages waited than a
