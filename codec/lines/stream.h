@@ -62,7 +62,7 @@ class ByteStream {
   Descriptor descriptor_;
 };
 
-/// Where nobody names a host.
+/// The host that is meant where nobody names one.
 constexpr const char* kThisHost = "127.0.0.1";
 /// An Internet address as the user wrote it.
 struct HostPort {

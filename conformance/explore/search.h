@@ -79,7 +79,7 @@ struct Result {
   double omission_probability = 0;       ///< A bound for that of having left a state out.
   bool step_acted = false;               ///< The given step once differed from the machine's.
   bool complete = false;                 ///< Every state was reached.
-  const char* limit = "";                ///< Why not, where it is not for a violation alone.
+  const char* limit = "";                ///< Why not, unless a violation is the only reason.
   std::optional<Path> violation;         ///< A shortest one.
   std::optional<Path> known_weakness;    ///< A shortest way to one, where there are any.
   std::uint64_t known_weak_states = 0;

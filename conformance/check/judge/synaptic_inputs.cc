@@ -463,7 +463,7 @@ void SynapticWatch::told(std::uint16_t device, const Observation& seen,
          {}});
   }
   in->told_us = in->waits_us = now;
-  // Data that came just before a signal of status old are told by the next one.
+  // The next signal tells data that came just before one of status old.
   in->known_us = fresh ? now : std::max(in->known_us, now - response);
   in->before = false;
   in->ticks.add(now);

@@ -563,7 +563,7 @@ void SynapticWatch::settle_at(std::uint16_t device, std::int64_t now_us) {
     Place at;
     at.time_us = since;
     const std::int64_t response = context_.response_us(device);
-    bool came = false;  // Then silence is right for nobody.
+    bool came = false;  // Data surely did: then no profile accepts the silence.
     for (std::size_t i = 0; i < in.data_us.size(); ++i) {
       const std::int64_t data_us = in.data_us[i];
       came = came || (in.data_sure[i] && data_us > since && data_us <= now_us - response);

@@ -85,7 +85,7 @@ class SynapticWatch {
     std::int64_t ended_us = -1;  ///< Stopped or disposed, or created and not started, then.
     std::int64_t told_us = -1;   ///< The last synData_received.
     std::int64_t waits_us = -1;  ///< Silence counts from here.
-    std::int64_t known_us = -1;  ///< Data before it are told, or too late for that.
+    std::int64_t known_us = -1;  ///< Data that came before then have been judged.
     std::array<std::int64_t, 4> data_us{-1, -1, -1, -1};  ///< The last data that it was given.
     std::array<bool, 4> data_sure{};  ///< Whether they surely came in, from its peer.
     std::array<bool, 4> data_its{};   ///< Whether they may be from its peer.

@@ -301,7 +301,7 @@ TEST(AlignTwice, OneLineTwice) {
   }
 }
 
-// A recorder that begins another file leaves its clock alone. What was under way then comes late.
+// A recorder that begins another file does not set its clock: frames that were under way come late.
 TEST(AlignTwice, AFileThatGoesOnWhereAnotherEnds) {
   Script script;
   script.join(0, 11, 2, 100).join(200, 11, 3, 200).join(400, 11, 4, 300);

@@ -147,7 +147,7 @@ TEST(JoinWatch, InACaptureALinkAckProvesReception) {
   EXPECT_EQ(seen(asks(true), true), "(J3-REPLY) ") << "Nothing shows that it lives.";
 }
 
-// By its log a mote joins an island whose reply nobody captured.
+// The log of a mote shows that it joins an island whose join_reply is in no capture.
 TEST(JoinWatch, AReplyThatEscapedIsNoOthers) {
   const auto joins = [](std::uint16_t acked, double ack_ms, bool complete) {
     Script script;

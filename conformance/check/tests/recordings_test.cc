@@ -300,7 +300,7 @@ TEST(AlignLogs, WhatAShortLogShowsIsFound) {
   EXPECT_EQ(broken_in(judge(both, complete())), "WIRE-AM-LENGTH");
 }
 
-// On either side of a step the log of a node shows what it does; across it nobody knows.
+// A log whose clock steps is judged on either side of the step, and not across it.
 TEST(AlignLogs, ALogWhoseClockStepsForth) {
   const Recorded run = recorded("hospital");
   const auto step = [](int tick, const std::string&) { return tick > 700 ? tick + 3072 : tick; };

@@ -4,8 +4,8 @@
 // capture, once with nothing known of the recorder and once with the truth: it began with the node
 // and missed nothing.
 // - A run that the suite finds in order is not blamed: no lawful variant, no shipped
-// implementation;
-//   and a mutant only if the suite fails it in some case, since a case looks at what it is about.
+//   implementation; and a mutant only if the suite fails it in some case, since a case looks at
+//   what it is about.
 // - What an application asked for and what left in its place is before the eyes of both in a log:
 //   such a run is not in order for the judge either (T1-WRAP, S2-CONTENT).
 // - A frame that must not be on a link, by a line that fails, is before the eyes of both. The judge

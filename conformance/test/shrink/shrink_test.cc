@@ -97,8 +97,8 @@ mutants::Mutants join_mutants() {
   return out;
 }
 
-// For every named mutant of the join, its first failing case shrinks to one that still fails alike,
-// that the machine and its lawful variants pass, and of which no line can be dropped.
+// For every named mutant of the join, its first failing case shrinks to one that still fails alike.
+// The machine and its lawful variants pass that one, and no line of it can be dropped.
 TEST(Shrink, FailuresOfMutants) {
   std::size_t before = 0;
   std::size_t after = 0;
