@@ -109,10 +109,14 @@ endif()
 
 # What tests are labelled: fast, of which all together take less than a minute; slow; waits, what
 # is slow as it waits for lines in real time, so that all of these run at once, after the others;
-# or long, a proof that `tools/test --all` alone runs. FOREIGN tests read bytes of other people, so
-# that tools/test runs them under sanitizers, too; the target foreign_tests builds them.
+# or long, a proof that `tools/test --all` alone runs.
+# FOREIGN tests read bytes of other people, so that they run under sanitizers: those of libraries and
+# the replays of fuzz targets there alone in tools/test, whose optimised build has
+# RUBRIC_FOREIGN_TESTS off; those of programs with the long proofs. The targets foreign_tests and
+# foreign_long_tests build them.
 if(RUBRIC_TESTS)
   add_custom_target(foreign_tests)
+  add_custom_target(foreign_long_tests)
 endif()
 
 function(rubric_label_test name label foreign targets)
@@ -120,9 +124,13 @@ function(rubric_label_test name label foreign targets)
     set(label fast)
   endif()
   if(foreign)
+    set(foreign_target foreign_tests)
+    if("long" IN_LIST label)
+      set(foreign_target foreign_long_tests)
+    endif()
     list(APPEND label foreign)
     if(targets)
-      add_dependencies(foreign_tests ${targets})
+      add_dependencies(${foreign_target} ${targets})
     endif()
   endif()
   set(timeout_s 900)
@@ -161,10 +169,10 @@ endfunction()
 # [LABEL fast|slow|waits|long]): one GoogleTest program, one ctest entry or n. Tests are not
 # optimised: where that costs more than compiling with optimisation, a test is BUSY.
 function(rubric_test name)
-  if(NOT RUBRIC_TESTS)
+  cmake_parse_arguments(arg "FOREIGN;BUSY" "LABEL;PARTS" "SOURCES;DEPS" ${ARGN})
+  if(NOT RUBRIC_TESTS OR (arg_FOREIGN AND NOT RUBRIC_FOREIGN_TESTS))
     return()
   endif()
-  cmake_parse_arguments(arg "FOREIGN;BUSY" "LABEL;PARTS" "SOURCES;DEPS" ${ARGN})
   add_executable(${name} ${arg_SOURCES})
   target_link_libraries(${name} PRIVATE rubric_options ${arg_DEPS} GTest::gmock GTest::gtest_main
     fmt::fmt)
@@ -183,8 +191,7 @@ function(rubric_test name)
       set(runs "max_success=250 max_size=200")
     endif()
     set_tests_properties(${name} PROPERTIES ENVIRONMENT "RC_PARAMS=seed=1 ${runs}")
-    add_test(NAME ${name}_any_seed COMMAND ${name} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
-    rubric_label_test(${name}_any_seed long "" ${name})
+    rubric_add_test(${name}_any_seed 1 long "" ${name} ${name})
     set_tests_properties(${name}_any_seed PROPERTIES ENVIRONMENT "RC_PARAMS=${runs}")
   endif()
 endfunction()
@@ -231,7 +238,7 @@ function(rubric_link_libraries_first)
 endfunction()
 
 # rubric_script_test(NAME [FOREIGN] [LABEL fast|slow|waits|long] [PARTS n] COMMAND word ...): a
-# program or script as a ctest entry, or as n.
+# program or script as a ctest entry, or as n; a FOREIGN one is long under sanitizers.
 function(rubric_script_test name)
   if(NOT RUBRIC_TESTS)
     return()
@@ -242,6 +249,9 @@ function(rubric_script_test name)
   list(GET arg_COMMAND 0 program)
   if(TARGET ${program})
     list(APPEND targets ${program})
+  endif()
+  if(arg_FOREIGN AND RUBRIC_SANITIZE)
+    set(arg_LABEL long)
   endif()
   rubric_add_test(${name} "${arg_PARTS}" "${arg_LABEL}" "${arg_FOREIGN}" "${targets}"
     ${arg_COMMAND})
@@ -334,7 +344,7 @@ function(rubric_fuzzer name)
     set_property(GLOBAL APPEND PROPERTY RUBRIC_LIBRARIES_FIRST ${target}_replay)
     target_precompile_headers(${target}_replay REUSE_FROM rubric_replay_headers)
     if(RUBRIC_SANITIZE)
-      rubric_script_test(${target}_replay FOREIGN COMMAND ${target}_replay ${corpus})
+      rubric_add_test(${target}_replay 1 fast FOREIGN ${target}_replay ${target}_replay ${corpus})
     else()
       set_target_properties(${target}_replay PROPERTIES EXCLUDE_FROM_ALL ON)
     endif()
