@@ -112,8 +112,8 @@ endif()
 # or long, a proof that `tools/test --all` alone runs.
 # FOREIGN tests read bytes of other people, so that they run under sanitizers: those of libraries and
 # the replays of fuzz targets there alone in tools/test, whose optimised build has
-# RUBRIC_FOREIGN_TESTS off; those of programs with the long proofs. The targets foreign_tests and
-# foreign_long_tests build them.
+# RUBRIC_FOREIGN_TESTS off; those of programs, and those that are COUNTED as the README says how much
+# they try, with the long proofs. The targets foreign_tests and foreign_long_tests build them.
 if(RUBRIC_TESTS)
   add_custom_target(foreign_tests)
   add_custom_target(foreign_long_tests)
@@ -165,13 +165,16 @@ function(rubric_add_test name parts label foreign targets)
   endforeach()
 endfunction()
 
-# rubric_test(NAME [FOREIGN] [BUSY] SOURCES a_test.cc ... [DEPS lib ...] [PARTS n]
+# rubric_test(NAME [FOREIGN [COUNTED]] [BUSY] SOURCES a_test.cc ... [DEPS lib ...] [PARTS n]
 # [LABEL fast|slow|waits|long]): one GoogleTest program, one ctest entry or n. Tests are not
 # optimised: where that costs more than compiling with optimisation, a test is BUSY.
 function(rubric_test name)
-  cmake_parse_arguments(arg "FOREIGN;BUSY" "LABEL;PARTS" "SOURCES;DEPS" ${ARGN})
-  if(NOT RUBRIC_TESTS OR (arg_FOREIGN AND NOT RUBRIC_FOREIGN_TESTS))
+  cmake_parse_arguments(arg "FOREIGN;COUNTED;BUSY" "LABEL;PARTS" "SOURCES;DEPS" ${ARGN})
+  if(NOT RUBRIC_TESTS OR (arg_FOREIGN AND NOT arg_COUNTED AND NOT RUBRIC_FOREIGN_TESTS))
     return()
+  endif()
+  if(arg_COUNTED AND RUBRIC_SANITIZE)
+    set(arg_LABEL long)
   endif()
   add_executable(${name} ${arg_SOURCES})
   target_link_libraries(${name} PRIVATE rubric_options ${arg_DEPS} GTest::gmock GTest::gtest_main
