@@ -110,10 +110,10 @@ endif()
 # What tests are labelled: fast, of which all together take less than a minute; slow; waits, what
 # is slow as it waits for lines in real time, so that all of these run at once, after the others;
 # or long, a proof that `tools/test --all` alone runs.
-# FOREIGN tests read bytes of other people, so that they run under sanitizers: those of libraries and
-# the replays of fuzz targets there alone in tools/test, whose optimised build has
-# RUBRIC_FOREIGN_TESTS off; those of programs, and those that are COUNTED as the README says how much
-# they try, with the long proofs. The targets foreign_tests and foreign_long_tests build them.
+# FOREIGN tests read bytes of other people, so that they run under sanitizers: those of libraries
+# and the replays of fuzz targets there alone in tools/test, whose optimised build has
+# RUBRIC_FOREIGN_TESTS off; those of programs, and those that are COUNTED as the README says how
+# much they try, with the long proofs. The targets foreign_tests and foreign_long_tests build them.
 if(RUBRIC_TESTS)
   add_custom_target(foreign_tests)
   add_custom_target(foreign_long_tests)
