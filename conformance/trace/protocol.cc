@@ -53,17 +53,18 @@ class AppReader {
     wire(need(root, "wire", "a protocol"));
     for (const auto& [key, value] : entries(need(root, "roles", "a protocol"))) role(key, value);
     if (out_.roles.empty()) fail(root, "a protocol without a role");
-    out_.profiles = words(root["profiles"]);
-    if (const YAML::Node frames = root["frames"]) {
+    out_.profiles = words(at(root, "profiles"));
+    if (const YAML::Node frames = at(root, "frames")) {
       keys(frames, "frames", {"broadcast", "whole_on_serial", "on_peis"});
-      out_.broadcast = messages(frames["broadcast"]);
-      out_.whole_on_serial = messages(frames["whole_on_serial"]);
-      out_.on_peis = messages(frames["on_peis"]);
+      out_.broadcast = messages(at(frames, "broadcast"));
+      out_.whole_on_serial = messages(at(frames, "whole_on_serial"));
+      out_.on_peis = messages(at(frames, "on_peis"));
     }
-    for (const auto& [key, value] : entries(root["enums"])) enumeration(key, value);
-    for (const auto& [key, value] : entries(root["parameters"])) parameter(key, value);
-    for (const auto& [key, value] : entries(root["calls"])) message(AppWhat::kCall, key, value);
-    for (const auto& [key, value] : entries(root["events"])) message(AppWhat::kEvent, key, value);
+    for (const auto& [key, value] : entries(at(root, "enums"))) enumeration(key, value);
+    for (const auto& [key, value] : entries(at(root, "parameters"))) parameter(key, value);
+    for (const auto& [key, value] : entries(at(root, "calls"))) message(AppWhat::kCall, key, value);
+    for (const auto& [key, value] : entries(at(root, "events")))
+      message(AppWhat::kEvent, key, value);
     add_messages_of_links();
     return std::move(out_);
   }
@@ -86,8 +87,11 @@ class AppReader {
     }
   }
 
+  // Here alone, as the compiler makes a map[] of its own for each length of a written key.
+  static YAML::Node at(const YAML::Node& map, const char* key) { return map[key]; }
+
   YAML::Node need(const YAML::Node& map, const char* key, const std::string& what) const {
-    const YAML::Node found = map[key];
+    const YAML::Node found = at(map, key);
     if (!found) fail(map, what + " without " + quoted(key));
     return found;
   }
@@ -172,7 +176,7 @@ class AppReader {
         fail(links, "expected radio, serial or peis, given " + quoted(link));
       }
     }
-    if (const YAML::Node has = node["has"]) {
+    if (const YAML::Node has = at(node, "has")) {
       one.has_id = false;
       for (const std::string& what : words(has)) {
         if (what == "id") {
@@ -220,10 +224,10 @@ class AppReader {
     if (one.max < one.min) fail(node, "max is less than min");
     // Where there are profiles, these have the values of nodes that state none.
     const YAML::Node unstated =
-        out_.profiles.empty() ? need(node, "unstated", "a parameter") : node["unstated"];
+        out_.profiles.empty() ? need(node, "unstated", "a parameter") : at(node, "unstated");
     if (unstated) one.unstated = number(unstated, one.max);
     if (unstated && one.unstated < one.min) fail(unstated, "unstated is less than min");
-    if (const YAML::Node decision = node["decision"]) {
+    if (const YAML::Node decision = at(node, "decision")) {
       one.decision = static_cast<int>(number(decision, kU2));
     }
     if (out_.parameters.size() == kU1) fail(key, "more than 255 parameters");
@@ -256,11 +260,11 @@ class AppReader {
     if (node.IsScalar()) return field_of(node);
     keys(node, "a field", {"type", "enum", "max"});
     AppField out = field_of(need(node, "type", "a field"));
-    if (const YAML::Node names = node["enum"]) {
+    if (const YAML::Node names = at(node, "enum")) {
       out.names = names_of(text(names));
       if (!out.names) fail(names, "no enum " + quoted(names.Scalar()));
     }
-    if (const YAML::Node max = node["max"]) {
+    if (const YAML::Node max = at(node, "max")) {
       out.max = static_cast<std::uint32_t>(number(max, out.max));
     }
     return out;

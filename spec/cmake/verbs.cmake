@@ -43,24 +43,60 @@ endif()
 # What a Release build does beside -O2, by what tools/bench gains. WARM: GCC inlines as much in a
 # unit of many files as in one of few. HOT: and -O3, which takes half as long again to compile.
 # COLD, where no benchmark looks: -O1. With sanitizers, optimising takes longer than it saves in
-# the tests; only HOT and what uses RUBRIC_SANITIZED_BUSY have -O1 there.
-set(RUBRIC_WARM
-  "$<$<AND:$<CONFIG:Release>,$<CXX_COMPILER_ID:GNU>>:SHELL:--param inline-unit-growth=1000>")
-if(RUBRIC_SANITIZE)
-  set(RUBRIC_SANITIZED_BUSY $<$<CONFIG:Debug>:-O1>)
+# the tests; only HOT and BUSY have -O1 there.
+if(CMAKE_BUILD_TYPE STREQUAL "Release")
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    set(RUBRIC_WARM --param=inline-unit-growth=1000)
+  endif()
+  set(RUBRIC_HOT -O3 ${RUBRIC_WARM})
+  set(RUBRIC_COLD -O1)
+elseif(CMAKE_BUILD_TYPE STREQUAL "Debug" AND RUBRIC_SANITIZE)
+  set(RUBRIC_HOT -O1)
+  set(RUBRIC_BUSY -O1)
 endif()
-set(RUBRIC_HOT $<$<CONFIG:Release>:-O3> ${RUBRIC_WARM} ${RUBRIC_SANITIZED_BUSY})
-set(RUBRIC_COLD $<IF:$<CONFIG:Release>,-O1,-O0>)
 
-# rubric_library(NAME [HOT|WARM|COLD] SOURCES a.cc ... [DEPS lib ...]): a static library.
+# rubric_compile(TARGET library|test|replay [option ...]): compiles the target with the options,
+# and what nearly all sources include only once for all targets of the same kind and options, as
+# precompiled headers fit no others.
+file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/headers.cc CONTENT "int main() {}\n")
+function(rubric_compile target kind)
+  string(MAKE_C_IDENTIFIER "rubric_${kind}_headers${ARGN}" headers)
+  if(NOT TARGET ${headers})
+    if(kind STREQUAL "library")
+      add_library(${headers} OBJECT EXCLUDE_FROM_ALL ${PROJECT_BINARY_DIR}/headers.cc)
+    else()
+      add_executable(${headers} EXCLUDE_FROM_ALL ${PROJECT_BINARY_DIR}/headers.cc)
+    endif()
+    target_compile_options(${headers} PRIVATE ${ARGN})
+    target_link_libraries(${headers} PRIVATE rubric_options fmt::fmt)
+    target_precompile_headers(${headers} PRIVATE <fmt/format.h> <algorithm> <array> <chrono>
+      <fstream> <functional> <map> <memory> <optional> <set> <string> <variant> <vector>)
+    if(kind STREQUAL "test")
+      target_link_libraries(${headers} PRIVATE GTest::gmock)
+      target_precompile_headers(${headers} PRIVATE <gmock/gmock.h> <gtest/gtest.h>)
+    endif()
+  endif()
+  target_compile_options(${target} PRIVATE ${ARGN})
+  target_precompile_headers(${target} REUSE_FROM ${headers})
+endfunction()
+
+# rubric_library(NAME [HOT|WARM|COLD] [BUSY] SOURCES a.cc ... [DEPS lib ...]): a static library.
 function(rubric_library name)
-  cmake_parse_arguments(arg "HOT;WARM;COLD" "" "SOURCES;DEPS" ${ARGN})
+  cmake_parse_arguments(arg "HOT;WARM;COLD;BUSY" "" "SOURCES;DEPS" ${ARGN})
   add_library(${name} STATIC ${arg_SOURCES})
-  foreach(heat HOT WARM COLD)
+  foreach(heat HOT WARM COLD BUSY)
     if(arg_${heat})
-      target_compile_options(${name} PRIVATE ${RUBRIC_${heat}})
+      list(APPEND options ${RUBRIC_${heat}})
     endif()
   endforeach()
+  if(CMAKE_UNITY_BUILD)
+    # The precompiled headers know fmt's macros, so that what does without fmt must know them, too.
+    target_compile_definitions(${name} PRIVATE
+      $<TARGET_PROPERTY:fmt::fmt,INTERFACE_COMPILE_DEFINITIONS>)
+    rubric_compile(${name} library ${options})
+  else()  # Where files are compiled one by one, a missing include shows.
+    target_compile_options(${name} PRIVATE ${options})
+  endif()
   # Our warnings are for us: who uses an installed library has options of his own.
   target_link_libraries(${name} PUBLIC $<BUILD_INTERFACE:rubric_options> ${arg_DEPS})
   target_compile_features(${name} PUBLIC cxx_std_20)
@@ -90,22 +126,6 @@ function(rubric_embed_files output)
       -DFUNCTION=${arg_FUNCTION} -DOUT=${CMAKE_CURRENT_BINARY_DIR}/${output} -P ${script}
     DEPENDS ${paths} ${script} VERBATIM)
 endfunction()
-
-# What all tests include, and all replays of fuzz targets, compiled once each.
-if(RUBRIC_TESTS)
-  # Programs, as precompiled headers fit code of their own kind alone.
-  file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/headers.cc CONTENT "int main() {}\n")
-  foreach(kind test replay)
-    add_executable(rubric_${kind}_headers ${PROJECT_BINARY_DIR}/headers.cc)
-    target_link_libraries(rubric_${kind}_headers PRIVATE rubric_options fmt::fmt)
-    target_compile_options(rubric_${kind}_headers PRIVATE -O0)
-    target_precompile_headers(rubric_${kind}_headers PRIVATE <fmt/format.h> <algorithm> <fstream>
-      <map> <optional> <set> <string> <variant> <vector>)
-  endforeach()
-  target_link_libraries(rubric_test_headers PRIVATE GTest::gmock)
-  target_precompile_headers(rubric_test_headers PRIVATE <gmock/gmock.h> <gtest/gtest.h>)
-  set_target_properties(rubric_replay_headers PROPERTIES EXCLUDE_FROM_ALL ON)
-endif()
 
 # What tests are labelled: fast, of which all together take less than a minute; slow; waits, what
 # is slow as it waits for lines in real time, so that all of these run at once, after the others;
@@ -179,11 +199,10 @@ function(rubric_test name)
   add_executable(${name} ${arg_SOURCES})
   target_link_libraries(${name} PRIVATE rubric_options ${arg_DEPS} GTest::gmock GTest::gtest_main
     fmt::fmt)
-  if(arg_BUSY)
-    target_compile_options(${name} PRIVATE ${RUBRIC_COLD})
+  if(arg_BUSY AND CMAKE_BUILD_TYPE STREQUAL "Release")
+    rubric_compile(${name} test -O1)
   else()
-    target_compile_options(${name} PRIVATE -O0)
-    target_precompile_headers(${name} REUSE_FROM rubric_test_headers)
+    rubric_compile(${name} test -O0)
   endif()
   set_property(GLOBAL APPEND PROPERTY RUBRIC_LIBRARIES_FIRST ${name})
   rubric_add_test(${name} "${arg_PARTS}" "${arg_LABEL}" "${arg_FOREIGN}" ${name} ${name})
@@ -343,9 +362,8 @@ function(rubric_fuzzer name)
   if(RUBRIC_TESTS)
     add_executable(${target}_replay targets/${target}.cc)
     target_link_libraries(${target}_replay PRIVATE ${libraries} rubric_replay fmt::fmt)
-    target_compile_options(${target}_replay PRIVATE -O0)
+    rubric_compile(${target}_replay replay -O0)
     set_property(GLOBAL APPEND PROPERTY RUBRIC_LIBRARIES_FIRST ${target}_replay)
-    target_precompile_headers(${target}_replay REUSE_FROM rubric_replay_headers)
     if(RUBRIC_SANITIZE)
       rubric_add_test(${target}_replay 1 fast FOREIGN ${target}_replay ${target}_replay ${corpus})
     else()

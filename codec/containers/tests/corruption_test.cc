@@ -1,14 +1,12 @@
 // Corrupts real serial streams and checks that every frame left intact is still found.
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <functional>
 #include <map>
-#include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "codec/containers/hdlc_reader.h"
 #include "codec/containers/serial_frame.h"
+#include "codec/containers/tests/captures.h"
 #include "codec/containers/tests/testing.h"
 #include "codec/runtime/hdlc.h"
 #include "tools/tests/made_inputs.h"
@@ -21,17 +19,10 @@ using namespace testing;
 
 // Returns the frames of all firmware captures, flags included, from their lists.
 std::vector<std::string> captured_frames() {
-  std::vector<std::string> paths;
-  for (const auto& entry : std::filesystem::directory_iterator("spec/captures/firmware")) {
-    const std::string path = entry.path().string();
-    if (path.ends_with(".sf.jsonl")) paths.push_back(path);
-  }
-  std::sort(paths.begin(), paths.end());
   std::vector<std::string> frames;
-  for (const std::string& path : paths) {
-    std::istringstream lines(read_file(path));
-    for (std::string line; std::getline(lines, line);) {
-      frames.push_back(from_hex(nlohmann::json::parse(line)["hdlc"].get<std::string>()));
+  for (const std::string& path : files("spec/captures/firmware", ".sf.jsonl")) {
+    for (const std::string& row : rows_of(path)) {
+      frames.push_back(from_hex(member(row, "hdlc").value()));
     }
   }
   return frames;

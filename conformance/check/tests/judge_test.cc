@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <functional>
 
 #include "codec/reflect/requirements.h"
 #include "conformance/check/judge/findings.h"
@@ -43,7 +42,7 @@ void end_well(Script& script, double ms) {
 struct Fault {
   const char* name;
   const char* found;  // Rules that are broken, in order.
-  std::function<void(Script&)> make;
+  void (*make)(Script&);
 };
 
 const Fault kFaults[] = {

@@ -1,5 +1,4 @@
 // Equal states hash equal, and every difference between states changes their hashes.
-#include <functional>
 #include <set>
 
 #include "conformance/machine/tests/machine_fixture.h"
@@ -31,7 +30,7 @@ State busy_state() {
 }
 
 TEST(Hash, EveryDifferenceCounts) {
-  const std::function<void(State&)> kChanges[] = {
+  void (*const kChanges[])(State&) = {
       [](State& s) { s.config.id++; },
       [](State& s) { s.config.role = Role::kMote; },
       [](State& s) { s.config.profile.join_period_ticks++; },
