@@ -199,16 +199,6 @@ class Formats(Folder):
         code, out, err = check("--format", "json", "--out", path, WRONG_SEQ)
         self.assertEqual((code, out, err), (1, "", ""))
         self.assertEqual(path.read_text(), check("--format", "json", WRONG_SEQ)[1])
-        code, out, err = check("--out", self.folder / "no" / "report", WRONG_SEQ)
-        self.assertEqual((code, out), (74, ""))
-        self.assertIn("No such file or directory", err)
-        copy = self.write("copy.pcapng", WRONG_SEQ.read_bytes())
-        self.assertEqual(check("--out", copy, copy)[0], 64)
-        self.assertEqual(copy.read_bytes(), WRONG_SEQ.read_bytes())
-
-    def test_out_that_is_full(self):
-        self.refused(("check", "--out", "/dev/full", WRONG_SEQ), "cannot write /dev/full", 74)
-
 
     def test_a_folder_of_reports(self):
         capture = self.write("<b>&.pcapng", WRONG_SEQ.read_bytes())
@@ -275,16 +265,9 @@ class Expectations(Folder):
         self.assertEqual(self.against(text, CLEAN)[0], 0)
 
     def test_bad_files(self):
-        for text, says in [
-            ("- {requirement: J4-SEK, message: m, reason: r}\n", "known.yaml:1: no requirement"),
-            ("- {requirement: J4-SEQ, message: m}\n", "known.yaml:1: reason is missing"),
-            ("\n- {requirement: J4-SEQ, reason: m}\n", "known.yaml:2: message is missing"),
-            ("a: b\n", "known.yaml:1: expected a list"),
-            ("- [\n", "known.yaml:2: "),
-        ]:
-            code, out, err = self.against(text, WRONG_SEQ)
-            self.assertEqual((code, out), (64, ""), text)
-            self.assertIn(says, err)
+        code, out, err = self.against("\n- {requirement: J4-SEQ, reason: m}\n", WRONG_SEQ)
+        self.assertEqual((code, out), (64, ""))
+        self.assertIn("known.yaml:2: message is missing", err)  # Others: report_test.cc.
         self.refused(("check", "--expect", self.folder / "none.yaml", WRONG_SEQ),
                      "none.yaml: No such file", 66)
 

@@ -226,10 +226,11 @@ class Files(Folder):
             for words in (("decode", source, "--force", "--write"),
                           ("check", source, "--force", "--follow", "--write"),
                           ("forward", source, "--port", "0", "--force", "--write"),
-                          ("convert", source, "-o")):
-                done = run(*words, self.old)
-                self.assertNotIn(done.returncode, (0, 1), words)
-                self.assert_untouched(words)
+                          ("convert", source, "-o"), ("encode", source, "-o")):
+                for target in (self.old, self.folder / "new.pcapng"):
+                    done = run(*words, target)
+                    self.assertNotIn(done.returncode, (0, 1), words)
+                    self.assert_untouched(words)
 
     def feeding(self, *words):
         return subprocess.Popen([RUBRIC, *map(str, words)], stdin=subprocess.PIPE,

@@ -293,15 +293,6 @@ class Mixed(Captures):
         self.assertIn("; rubicon has no blink_to_radio_msg; blink_to_radio has it: --spec "
                       "blink_to_radio\n", err)
 
-    def test_few_frames_of_a_ti_chip(self):
-        """Too few to know that no FCS is there; but all alike."""
-        whole = (self.path / "cc24xx.pcap").read_bytes()
-        at = 24
-        for _ in range(4):
-            at += 16 + struct.unpack_from("<I", whole, at + 8)[0]
-        (self.path / "few.pcap").write_bytes(whole[:at])
-        self.assertIn("--fcs cc24xx", rubric("decode", self.path / "few.pcap")[2])
-
     def test_facts_are_filtered_and_counted(self):
         frames, _ = self.frames("tap.pcapng", "--filter", "frame.channel==12 && frame.rssi < -51")
         self.assertEqual([one["frame"]["channel"] for one in frames], [12] * 4)

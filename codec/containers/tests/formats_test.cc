@@ -175,19 +175,6 @@ TEST(WireHex, WhatSniffersAndSimulatorsPrint) {
   EXPECT_EQ(wrong[0].packet.error.fault, Fault::kUnexpected);
 }
 
-TEST(WireHex, WordsAndNumbersOfALogAreNoPackets) {
-  const std::string log =
-      "00 ff ff 00 00 04 22 06 00 02 00 01\n12\n1234\ndead beef\nadd 5 motes\nfeed the dog\n"
-      "00 ff ff 00 00 04 22 06 00 02 00 0g\n";
-  const auto reader = make_reader(InputFormat::kLog);
-  const std::vector<Kept> got = read_all(*reader, view(log));
-  ASSERT_EQ(got.size(), 2u);
-  EXPECT_EQ(got[0].packet.error, kSound);
-  EXPECT_EQ(got[1].packet.error.fault, Fault::kUnexpected);
-  EXPECT_EQ(got[1].packet.line, 7u);
-  EXPECT_EQ(reader->noise().lines, 5u);
-}
-
 TEST(WireHex, ALineThatIsCutHidesNoOthers) {
   const std::string packet = "00 ff ff 00 00 04 22 06 00 02 00 01\n";
   const std::string text = packet + "00 ff ff 0\n" + packet;
@@ -201,16 +188,6 @@ TEST(WireHex, ALineThatIsCutHidesNoOthers) {
   EXPECT_EQ(detect(view(std::string("add\nbad\n"))), InputFormat::kUnknown);
 }
 
-TEST(WireHex, HexTextAfterAnUnknownPrefixIsTold) {
-  const std::string packet = "00 ff ff 00 00 04 22 06 00 02 00 01\n";
-  const auto reader = make_reader(InputFormat::kLog);
-  const std::string log = packet + "hello, world\n" + "mote1> " + packet + "mote2> " + packet;
-  EXPECT_EQ(read_all(*reader, view(log)).size(), 1u);
-  EXPECT_EQ(reader->noise().lines, 3u);
-  EXPECT_EQ(reader->noise().prefixed, 3u);
-  EXPECT_EQ(reader->noise().prefix, "mote1> ");
-}
-
 TEST(WireHex, WordsBeforeAPacketAreFound) {
   const std::string packet = "00 ff ff 00 00 04 22 06 00 02 00 01\n";
   const std::string text = "12 words\nmote INFO 2 > " + packet;
@@ -218,16 +195,6 @@ TEST(WireHex, WordsBeforeAPacketAreFound) {
   EXPECT_EQ(line.number, 2u);
   EXPECT_EQ(std::string(line.prefix.begin(), line.prefix.end()), "mote INFO 2 > ");
   EXPECT_EQ(find_prefixed_line(view("[12.3] " + packet + "INFO 00 ff\n")).number, 0u);
-}
-
-TEST(WireHex, AMarkBeforeTheTextIsPassedOver) {
-  for (const std::string text : {"00 ff ff 00 00 04 22 06 00 02 00 01\n", "# note\n00 ff\n"}) {
-    EXPECT_EQ(detect(view("\xEF\xBB\xBF" + text)), InputFormat::kHex);
-    const auto reader = make_reader(InputFormat::kHex);
-    const std::vector<Kept> got = read_all(*reader, view("\xEF\xBB\xBF" + text));
-    ASSERT_EQ(got.size(), 1u);
-    EXPECT_NE(got[0].packet.error.fault, Fault::kUnexpected);
-  }
 }
 
 TEST(WireHex, LinesThatEndWithTheirFcs) {

@@ -42,17 +42,6 @@ class MoteJoin : public testing::Test {
   Actions actions_;
 };
 
-TEST_F(MoteJoin, J4Seq_IgnoresEveryOtherNumber) {
-  call();
-  const JoinMote before = join_;
-  for (std::uint32_t seq_num = 0; seq_num <= 0xFFFF; ++seq_num) {
-    if (seq_num == 100) continue;
-    ASSERT_EQ(reply(static_cast<std::uint16_t>(seq_num)), JoinSend::kNone);
-    ASSERT_EQ(ignored_by(), "J4-SEQ"_rule);
-    ASSERT_EQ(join_, before);
-  }
-}
-
 TEST_F(MoteJoin, J8_DeployedSendsSevenAndSaysNothing) {
   profile_.join_requests_max = 7;
   profile_.join_fail_signalled = false;
@@ -130,16 +119,6 @@ TEST_F(SinkJoin, J6Seq_OnlyTheNumberStoredLast) {
   EXPECT_TRUE(ack(5, 101));
 }
 
-TEST_F(SinkJoin, J6Repeat_RepeatedAckChangesNothing) {
-  join(5, 100);
-  const JoinSink before = sink_;
-  EXPECT_FALSE(ack(5, 100));
-  EXPECT_EQ(ignored_by(), "J6-REPEAT"_rule);
-  EXPECT_FALSE(ack(5, 101));
-  EXPECT_EQ(ignored_by(), "J6-SEQ"_rule);
-  EXPECT_EQ(sink_, before);
-}
-
 TEST_F(SinkJoin, J2_DeployedAnswersAndCountsANewJoin) {
   profile_.listed_ignored = false;
   join(5, 100);
@@ -151,23 +130,6 @@ TEST_F(SinkJoin, J2_DeployedAnswersAndCountsANewJoin) {
   EXPECT_EQ(*find_member(sink_, 5), (Admission{5, 101, other}));
   EXPECT_FALSE(ack(5, 101));
   EXPECT_EQ(ignored_by(), "J6-REPEAT"_rule);
-}
-
-TEST_F(SinkJoin, J9_AnyInterleavingOfTwoJoins) {
-  // Every order of request 5, ack 5, request 6, ack 6 in which a mote asks before it acks.
-  const int kOrders[][4] = {{0, 1, 2, 3}, {0, 2, 1, 3}, {0, 2, 3, 1},
-                            {2, 0, 1, 3}, {2, 0, 3, 1}, {2, 3, 0, 1}};
-  for (const auto& order : kOrders) {
-    sink_ = {};
-    for (const int what : order) {
-      const auto mote = static_cast<std::uint16_t>(what < 2 ? 5 : 6);
-      const auto seq_num = static_cast<std::uint16_t>(mote * 10);
-      const Descriptor own{static_cast<std::uint8_t>(mote), 0, mote};
-      EXPECT_TRUE(what % 2 == 0 ? request(mote, seq_num, own) : ack(mote, seq_num));
-    }
-    EXPECT_EQ(*find_member(sink_, 5), (Admission{5, 50, {5, 0, 5}}));
-    EXPECT_EQ(*find_member(sink_, 6), (Admission{6, 60, {6, 0, 6}}));
-  }
 }
 
 TEST_F(SinkJoin, J3Overwrite_LateAckFindsNoPlace) {

@@ -46,21 +46,6 @@ TEST(Outgoing, N2_WaitsWhileSendingAndLeavesInOrder) {
   EXPECT_TRUE(mote.done().silent());
 }
 
-TEST(Outgoing, N1Full_FifthThatWaitsIsRefused) {
-  Device mote = member(5);
-  for (std::uint8_t mark = 1; mark <= 5; ++mark) mote.call(message(mark));
-  const State before = mote.state;
-  mote.call(message(6));
-  EXPECT_EQ(mote.labels(), (std::vector{notified("N1-FULL"_rule)}));
-  EXPECT_EQ(mote.notice<SendResult>().seq_num, kNoSeq);
-  EXPECT_EQ(mote.state, before);
-  mote.done();
-  mote.call(message(7));
-  std::vector<std::uint8_t> left;
-  while (!mote.done().actions.transmits().empty()) left.push_back(mark_of(mote.only_frame()));
-  EXPECT_EQ(left, (std::vector<std::uint8_t>{3, 4, 5, 7}));
-}
-
 TEST(Outgoing, SerialHoldsTwo) {
   Device base(base_config());
   for (int i = 0; i < 3; ++i) {
@@ -72,16 +57,6 @@ TEST(Outgoing, SerialHoldsTwo) {
   EXPECT_EQ(base.state.island, kIsland);
 }
 
-TEST(Outgoing, AForwardThatFindsNoPlaceIsReportedAsLost) {
-  Device sink(sink_config());
-  OwnFrame up = heard(1, 1);
-  up.payload = net_msg({{kIsland, kNullDevid}, {kIsland, 5}});
-  for (int i = 0; i < 3; ++i) sink.hear(up);
-  const State before = sink.state;
-  EXPECT_EQ(sink.hear(up).labels(), (std::vector{ignored("N1-FULL"_rule)}));
-  EXPECT_EQ(sink.state, before);
-}
-
 TEST(Outgoing, J6Report_WaitsUntilTheLineIsOn) {
   Device sink(sink_config());
   sink.call(SetInterface{Link::kSerial, false});
@@ -91,31 +66,6 @@ TEST(Outgoing, J6Report_WaitsUntilTheLineIsOn) {
   EXPECT_NE(find_member(sink.state.sink, 5), nullptr);
   sink.call(SetInterface{Link::kSerial, true});
   EXPECT_EQ(sink.only_frame().type, am::kNet);
-}
-
-// Two forwards wait, so there is no room for the reports of two new members.
-TEST(Outgoing, J6Report_WaitsForRoomAndIsMadeOnce) {
-  Device sink(sink_config());
-  OwnFrame up = heard(1, 1);
-  up.payload = net_msg({{kIsland, kNullDevid}, {kIsland, 5}});
-  for (int i = 0; i < 3; ++i) sink.hear(up);
-  constexpr std::uint16_t kMotes[] = {6, 7};
-  for (const std::uint16_t devid : kMotes) {
-    sink.hear(join_request(devid, 100, kDescriptor)).done();
-    sink.hear(ack_join({kIsland, 1}, {kIsland, devid}, 100, kDescriptor));
-    EXPECT_EQ(sink.labels(), (std::vector{notified("J6-ADD"_rule), followed("J6-REPORT"_rule)}));
-    sink.hear(ack_join({kIsland, 1}, {kIsland, devid}, 100, kDescriptor));
-    EXPECT_EQ(sink.labels(), (std::vector{ignored("J6-REPEAT"_rule)}));
-  }
-  std::vector<std::uint16_t> reported;
-  for (int i = 0; i < 4; ++i) {
-    const auto message = rubicon::NetMsgView::parse(sink.done(Link::kSerial).only_frame().bytes());
-    ASSERT_TRUE(message);
-    if (i >= 2) reported.push_back(address_of(message->src()).devid);
-  }
-  EXPECT_EQ(reported, (std::vector<std::uint16_t>{6, 7}));
-  EXPECT_TRUE(sink.done(Link::kSerial).silent());
-  EXPECT_TRUE(sink.state.sink.unreported.empty());
 }
 
 TEST(Outgoing, J6Report_OfAnOldIslandIsForgotten) {
@@ -153,23 +103,6 @@ TEST(Outgoing, T3Timeout_WaitingForTheRadioDoesNotCount) {
   EXPECT_FALSE(mote.notice<AckReceived>().success);
 }
 
-// A forwarded message with the number of an own one that waits does not start its time.
-TEST(Outgoing, T3Timeout_ForwardsStartNoTimeout) {
-  Device sink(sink_config());
-  sink.step(LinkBusy{Link::kRadio, true});
-  OwnFrame down = heard(1, 1);
-  down.link = Link::kSerial;
-  down.payload = net_msg({{kIsland, 5}, {kOther, 6}, true, sink.state.config.first_seq});
-  sink.hear(down);
-  sink.call(Send{{kIsland, 6}, 10, true, {}});
-  EXPECT_EQ(sink.notice<SendResult>().seq_num, sink.state.config.first_seq);
-  sink.step(LinkBusy{Link::kRadio, false});
-  EXPECT_EQ(sink.only_frame().dest, 5);
-  EXPECT_TRUE(timers(sink.state).empty());
-  EXPECT_EQ(sink.done().only_frame().dest, 6);
-  EXPECT_EQ(timers(sink.state).size(), 1U);
-}
-
 TEST(Outgoing, SendDoneOfNothingIsIgnored) {
   Device mote = member(5);
   const State before = mote.state;
@@ -190,27 +123,6 @@ TEST(Incoming, N2InOrder_WaitsWhileTheApplicationIsBusy) {
   EXPECT_EQ(received(mote), (std::vector<std::uint8_t>{1, 2, 3, 4}));
   EXPECT_EQ(mote.labels()[0], followed("N2-IN-ORDER"_rule));
   EXPECT_EQ(received(mote.hear(heard(6))), (std::vector<std::uint8_t>{6}));
-}
-
-TEST(Incoming, OrderHoldsAcrossTheLinesOfASink) {
-  Device sink(sink_config());
-  sink.step(AppBusy{true});
-  sink.hear(heard_on_serial(1)).hear(heard(2, 1)).hear(heard(3, 1)).hear(heard_on_serial(4));
-  EXPECT_EQ(sink.hear(heard_on_serial(9)).labels(), (std::vector{ignored("N2-IN-FULL"_rule)}));
-  sink.hear(heard(5, 1)).hear(heard(6, 1));
-  EXPECT_EQ(sink.hear(heard(9, 1)).labels(), (std::vector{ignored("N2-IN-FULL"_rule)}));
-  sink.step(AppBusy{false});
-  EXPECT_EQ(received(sink), (std::vector<std::uint8_t>{1, 2, 3, 4, 5, 6}));
-}
-
-TEST(Incoming, WhatIsNotForUsTakesNoPlace) {
-  Device mote = member(5);
-  mote.step(AppBusy{true});
-  for (int i = 0; i < 9; ++i) mote.hear(heard(1, 77));
-  OwnFrame unknown = heard(1);
-  unknown.type = 99;
-  for (int i = 0; i < 9; ++i) mote.hear(unknown);
-  EXPECT_TRUE(mote.state.radio.in.empty());
 }
 
 TEST(Incoming, PeisDoesNotWait) {
@@ -234,23 +146,6 @@ TEST(Control, N10_OffSendsAndHearsNothing) {
   EXPECT_EQ(mote.labels(), (std::vector{notified("N10-ON"_rule)}));
   EXPECT_EQ(received(mote.hear(heard(2))), (std::vector<std::uint8_t>{2}));
   EXPECT_EQ(mark_of(mote.call(message(3)).only_frame()), 3);
-}
-
-TEST(Control, WaitingMessagesLeaveWhenTheLineIsSwitchedOn) {
-  Device mote = member(5);
-  mote.call(message(1)).call(message(2));
-  mote.call(SetInterface{Link::kRadio, false});
-  EXPECT_TRUE(mote.done().actions.transmits().empty());
-  mote.call(SetInterface{Link::kRadio, true});
-  EXPECT_EQ(mark_of(mote.only_frame()), 2);
-}
-
-TEST(Control, JoinWithTheRadioOffFailsInTheEnd) {
-  Device mote(mote_config(5));
-  mote.call(SetInterface{Link::kRadio, false});
-  EXPECT_EQ(mote.call(JoinIsland{kDescriptor}).labels(), (std::vector{ignored("N10-OFF"_rule)}));
-  for (int i = 0; i < 5; ++i) mote.join_timer();
-  EXPECT_FALSE(mote.notice<Joined>().success);
 }
 
 TEST(Control, LinesThatANodeDoesNotHave) {

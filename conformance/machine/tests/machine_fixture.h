@@ -1,5 +1,6 @@
 // Helpers of the machine's tests: nodes with a clock, frames made by the codec, and checks of a
-// step's results.
+// step's results. What a node must do is in the golden traces, as source_mutants shows; the tests
+// here are for what no trace sees: labels, other profiles, and choices that the rules leave free.
 #pragma once
 
 #include <gtest/gtest.h>

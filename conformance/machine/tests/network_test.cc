@@ -7,43 +7,11 @@ namespace {
 
 using Payload = std::vector<std::uint8_t>;
 
-constexpr std::uint8_t kOpenDoor[] = {0x0D, 0x0E};
-
 OwnFrame on_radio(std::uint16_t am_dest, const NetFields& fields) {
   return {Link::kRadio, am_dest, fields.src.devid, am::kNet, net_msg(fields)};
 }
 OwnFrame on_serial(const NetFields& fields) {
   return {Link::kSerial, 1, 0, am::kNet, padded(net_msg(fields))};
-}
-OwnFrame on_peis(std::uint16_t island, const NetFields& fields) {
-  return {Link::kPeis, island, fields.src.pid, am::kNet, net_msg(fields)};
-}
-
-TEST(Send, N1_MoteToMote) {
-  Device mote = member(5);
-  mote.call(Send{{kLocalPid, 6}, 10, false, kOpenDoor});
-  EXPECT_EQ(mote.labels(), (std::vector{followed("N3-LOCAL"_rule), sent("N4-MOTE"_rule),
-                                        notified("N1-SEQ"_rule)}));
-  EXPECT_EQ(mote.only_frame().dest, 6);
-  EXPECT_EQ(mote.only_frame().src, 5);
-  EXPECT_EQ(mote.only_payload(),
-            (Payload{0, 11, 0, 6, 0, 11, 0, 5, 0, 0, 2, 4, 3, 10, 0x0D, 0x0E}));
-  EXPECT_EQ(mote.notice<SendResult>().seq_num, 2);
-}
-
-TEST(Send, BaseStationOverSerialAndPeis) {
-  Device base(base_config());
-  base.call(Send{{kIsland, 5}, 10, true, kOpenDoor});
-  EXPECT_EQ(base.only_frame().link, Link::kSerial);
-  EXPECT_EQ(base.only_frame().dest, 1);
-  EXPECT_EQ(base.only_frame().src, 0);
-  EXPECT_EQ(base.only_payload(),
-            padded({0, 11, 0, 5, 0, 11, 0xFF, 0xFD, 1, 0, 1, 4, 3, 10, 0x0D, 0x0E}));
-  base.call(Send{{kOther, kNullDevid}, 10, false, kOpenDoor});
-  EXPECT_EQ(base.only_frame().link, Link::kPeis);
-  EXPECT_EQ(base.only_frame().dest, kOther);
-  EXPECT_EQ(base.only_frame().src, kIsland);
-  EXPECT_EQ(base.only_payload().size(), 16U);
 }
 
 TEST(Send, LargestGoesAndLargerIsRefused) {
@@ -57,33 +25,6 @@ TEST(Send, LargestGoesAndLargerIsRefused) {
   EXPECT_EQ(mote.labels(), (std::vector{notified("N1-SIZE"_rule)}));
   mote.call(Send{{kIsland, 6}, 10, false, {data.data(), 100}});
   EXPECT_EQ(mote.only_payload().size(), 114U);
-}
-
-TEST(Send, N4Self_IsRefusedByEveryRole) {
-  for (Device node : {member(5), Device(sink_config()), Device(base_config())}) {
-    const State before = node.state;
-    const std::uint16_t own = own_address(before).devid;
-    for (const std::uint16_t pid : {kIsland, kLocalPid}) {
-      for (const std::uint16_t devid : {own, kLocalDevid}) {
-        node.call(Send{{pid, devid}, 10, true, kOpenDoor});
-        EXPECT_EQ(node.labels(), (std::vector{notified("N4-SELF"_rule)}));
-        EXPECT_EQ(node.notice<SendResult>().seq_num, kNoSeq);
-        EXPECT_EQ(node.state, before);
-      }
-    }
-    node.call(Send{{kOther, own}, 10, false, kOpenDoor});
-    EXPECT_EQ(node.actions.transmits().size(), 1U);
-  }
-}
-
-TEST(Send, J11_NoMemberNoMessage) {
-  Device mote(mote_config(5));
-  mote.call(Send{{kIsland, 6}, 10, false, {}});
-  EXPECT_EQ(mote.labels(), (std::vector{notified("J11-SEND"_rule)}));
-  EXPECT_EQ(mote.notice<SendResult>().seq_num, kNoSeq);
-  mote.call(JoinIsland{kDescriptor}).done();
-  EXPECT_EQ(mote.call(Send{{kIsland, 6}, 10, false, {}}).labels(),
-            (std::vector{notified("J11-SEND"_rule)}));
 }
 
 TEST(Send, T4_EightAwaitedAndTheNinthRefused) {
@@ -125,14 +66,6 @@ TEST(Receive, T2Ack_NotForAnotherIslandsSink) {
   EXPECT_TRUE(sink.actions.transmits().empty());
   sink.hear(on_serial({{kIsland, 1}, {13, kNullDevid}, true}));
   EXPECT_EQ(sink.only_frame().link, Link::kSerial);
-}
-
-// Another node sent in its name.
-TEST(Receive, N4Self_NoAckToItself) {
-  Device mote = member(5);
-  mote.hear(on_radio(5, {{kIsland, 5}, {kIsland, 5}, true}));
-  EXPECT_TRUE(mote.actions.transmits().empty());
-  EXPECT_EQ(mote.labels().back(), ignored("N4-SELF"_rule));
 }
 
 TEST(Receive, T1_UnknownIsDropped) {
@@ -190,18 +123,6 @@ TEST(Receive, N11_MalformedIsDroppedAndTheNextIsHandled) {
   }
 }
 
-TEST(Receive, FramesForAnotherAreNotHeard) {
-  for (Device node : {member(5), Device(sink_config())}) {
-    const State before = node.state;
-    for (const std::uint8_t type : {am::kJoin, am::kJoinReply, am::kAckJoin, am::kNet}) {
-      OwnFrame frame = on_radio(77, {{kIsland, kBroadcastDevid}, {kIsland, 6}});
-      frame.type = type;
-      EXPECT_EQ(node.hear(frame).labels(), (std::vector{ignored(ReqId::kNone)}));
-    }
-    EXPECT_EQ(node.state, before);
-  }
-}
-
 TEST(Receive, UnknownAmTypesAreIgnored) {
   for (Device node : {member(5), Device(sink_config()), Device(base_config())}) {
     const bool base = node.state.config.role == Role::kBaseStation;
@@ -213,49 +134,6 @@ TEST(Receive, UnknownAmTypesAreIgnored) {
       EXPECT_EQ(node.hear(frame).labels(), (std::vector{ignored(ReqId::kNone)})) << type;
     }
   }
-}
-
-TEST(Forward, N6_UpTheSerialLineFilledWithZeros) {
-  Device sink(sink_config());
-  const NetFields fields{{kOther, 9}, {kIsland, 5}, true, 0x1234};
-  sink.hear(on_radio(1, fields));
-  EXPECT_EQ(sink.labels(), (std::vector{sent("N6-ROUTE"_rule)}));
-  EXPECT_EQ(sink.only_frame().link, Link::kSerial);
-  EXPECT_EQ(sink.only_frame().dest, kAmBroadcast);
-  EXPECT_EQ(sink.only_payload(), padded(net_msg(fields)));
-}
-
-// Mote, sink, base station, PEIS, base station, sink, mote: and the ack the same way back.
-TEST(Forward, N8_AcrossIslandsAndBack) {
-  Device from = member(5), sink_a(sink_config()), base_a(base_config());
-  Device base_b(base_config(kOther)), sink_b(sink_config(kOther)), to(mote_config(9));
-  to.call(JoinIsland{kDescriptor}).done();
-  to.hear(join_reply(9, {kOther, 9}, 0, 1)).done();
-  from.call(Send{{kOther, 9}, 10, true, kOpenDoor});
-  const std::uint16_t seq_num = from.notice<SendResult>().seq_num;
-  const Transmit& sent_first = from.only_frame();
-  to.hear(sink_b
-              .hear(base_b.hear(base_a.hear(sink_a.hear(sent_first).only_frame()).only_frame())
-                        .only_frame())
-              .only_frame());
-  const auto got = to.notice<Received>();
-  EXPECT_EQ(got.src, (Address{kIsland, 5}));
-  EXPECT_EQ(Payload(got.data.begin(), got.data.end()), (Payload{0x0D, 0x0E}));
-  from.hear(
-      sink_a
-          .hear(base_a.hear(base_b.hear(sink_b.hear(to.only_frame()).only_frame()).only_frame())
-                    .only_frame())
-          .only_frame());
-  EXPECT_EQ(from.notice<AckReceived>().seq_num, seq_num);
-  EXPECT_TRUE(from.notice<AckReceived>().success);
-}
-
-TEST(Forward, PeisOfAnotherIslandIsNotHeard) {
-  Device base(base_config());
-  EXPECT_EQ(base.hear(on_peis(kOther, {{kOther, 5}, {13, 1}})).labels(),
-            (std::vector{ignored(ReqId::kNone)}));
-  EXPECT_EQ(base.hear(on_peis(kIsland, {{kOther, 5}, {13, 1}})).labels(),
-            (std::vector{ignored("N8-LOOP"_rule)}));
 }
 
 TEST(Synaptic, DataOfATickAndItsReception) {
@@ -276,14 +154,6 @@ TEST(Synaptic, DataOfATickAndItsReception) {
   sink.call(StartAllChannels{});
   sink.hear(mote.only_frame());
   EXPECT_EQ(sink.call(ReadInput{id, 0}).notice<InputValue>().value, 1.0F);
-}
-
-TEST(Synaptic, J11Send_NoDataWithoutMembership) {
-  Device mote(mote_config(2));
-  mote.call(CreateChannel{Direction::kOut, {kLocalPid, 1}, 1, Mode::kReliable});
-  mote.call(StartAllChannels{});
-  mote.step(TimerDue{{TimerKind::kSynaptic, 0}});
-  EXPECT_EQ(mote.labels(), (std::vector{ignored("J11-SEND"_rule)}));
 }
 
 TEST(Synaptic, S3Changed_ChangeSurvivesARadioThatIsOff) {
@@ -327,21 +197,6 @@ TEST(IslandId, SameIslandKeepsMembers) {
   EXPECT_NE(find_member(sink.state.sink, 5), nullptr);
 }
 
-TEST(IslandId, N9Other_OtherConfigChangesNothing) {
-  Device sink(sink_config());
-  list_member(sink, 5);
-  const State before = sink.state;
-  for (int code = 0; code < 256; ++code) {
-    if (code == 10) continue;
-    sink.hear(config(static_cast<std::uint8_t>(code), kOther));
-    EXPECT_EQ(sink.labels(), (std::vector{ignored("N9-OTHER"_rule)}));
-  }
-  OwnFrame cut = set_island_id(kOther);
-  cut.payload.pop_back();
-  EXPECT_EQ(sink.hear(cut).labels(), (std::vector{ignored("WIRE-CONFIG"_rule)}));
-  EXPECT_EQ(sink.state, before);
-}
-
 TEST(IslandId, N9Other_ReservedIslandsAreNotTaken) {
   constexpr std::uint16_t kReserved[] = {0xFFFD, 0xFFFE, 0xFFFF};
   for (const std::uint16_t island : kReserved) {
@@ -358,19 +213,6 @@ TEST(IslandId, N9Other_ReservedIslandsAreNotTaken) {
   }
   Device sink(sink_config());
   EXPECT_EQ(sink.hear(set_island_id(0xFFFC)).labels()[0], followed("N9-SET"_rule));
-}
-
-TEST(IslandId, BaseStationTellsItsSink) {
-  Device base(base_config());
-  base.call(SetIslandId{12});
-  const Transmit& frame = base.only_frame();
-  EXPECT_EQ(frame.link, Link::kSerial);
-  EXPECT_EQ(frame.dest, 1);
-  EXPECT_EQ(frame.src, 0);
-  EXPECT_EQ(frame.type, 37);
-  EXPECT_EQ(base.only_payload(), (Payload{0x0A, 0x00, 0x0C}));  // The original sends it so.
-  EXPECT_TRUE(base.notice<OperationResult>().success);
-  EXPECT_EQ(own_address(base.state), (Address{12, kNullDevid}));
 }
 
 TEST(IslandId, NobodyElseMayTell) {

@@ -4,29 +4,6 @@
 namespace rubric::machine {
 namespace {
 
-TEST(Reboot, OnlyTheConfigurationStays) {
-  Device mote = member(5);
-  mote.call(Send{{kIsland, 1}, 10, true, {}});
-  mote.now = 4096;
-  mote.step(Reboot{});
-  EXPECT_TRUE(mote.silent());
-  EXPECT_EQ(mote.state.join, JoinMote{});
-  EXPECT_TRUE(mote.state.awaited.empty());
-  EXPECT_TRUE(timers(mote.state).empty());
-  EXPECT_EQ(mote.call(GetClock{}).notice<Clock>().ms, 0U);
-  mote.done();  // The frame on the air ended.
-  EXPECT_TRUE(mote.silent());
-  const std::uint16_t last = mote.state.sequence.last;
-  mote.call(JoinIsland{kDescriptor});
-  EXPECT_EQ(mote.state.join.seq_num, last + 1);
-
-  Device sink(sink_config());
-  list_member(sink, 5);
-  sink.hear(set_island_id(kOther));
-  sink.step(Reboot{});
-  EXPECT_EQ(sink.state, start(sink_config()));
-}
-
 // Numbers continue: a reply to a request from before must not fit the request after.
 TEST(Reboot, J4Seq_ReplyToARequestOfBeforeIsIgnored) {
   for (const bool powered_off : {false, true}) {
@@ -38,18 +15,6 @@ TEST(Reboot, J4Seq_ReplyToARequestOfBeforeIsIgnored) {
     EXPECT_EQ(mote.hear(late).labels(), (std::vector{ignored("J4-SEQ"_rule)}));
     EXPECT_EQ(mote.state.join.phase, JoinMote::Phase::kJoining);
   }
-}
-
-TEST(Reboot, DoesNotFreeALineThatSomebodyElseHas) {
-  Device sink(sink_config());
-  sink.step(LinkBusy{Link::kRadio, true}).step(LinkBusy{Link::kSerial, true});
-  sink.step(Reboot{});
-  sink.hear(join_request(5, 1, kDescriptor));
-  EXPECT_TRUE(sink.silent());
-  sink.call(Send{{kIsland, kNullDevid}, 10, false, {}});
-  EXPECT_TRUE(sink.actions.transmits().empty());
-  EXPECT_EQ(sink.step(LinkBusy{Link::kRadio, false}).only_frame().type, am::kJoinReply);
-  EXPECT_EQ(sink.step(LinkBusy{Link::kSerial, false}).only_frame().type, am::kNet);
 }
 
 TEST(PowerOff, NothingHasAnEffectUntilReboot) {
@@ -95,20 +60,6 @@ TEST(PowerOff, NothingHasAnEffectUntilReboot) {
   EXPECT_FALSE(mote.state.off);
   EXPECT_EQ(mote.call(GetClock{}).notice<Clock>().ms, 0U);
   EXPECT_EQ(mote.call(JoinIsland{kDescriptor}).only_frame().type, am::kJoin);
-}
-
-// Other users of the line need no power of this node.
-TEST(PowerOff, TheLineIsTakenAndFreedMeanwhile) {
-  Device sink(sink_config());
-  sink.step(LinkBusy{Link::kRadio, true}).step(LinkBusy{Link::kSerial, true});
-  sink.step(PowerOff{});
-  sink.step(LinkBusy{Link::kRadio, false});
-  sink.step(Reboot{});
-  EXPECT_EQ(sink.hear(join_request(5, 1, kDescriptor)).only_frame().type, am::kJoinReply);
-  sink.call(Send{{kIsland, kNullDevid}, 10, false, {}});
-  EXPECT_TRUE(sink.actions.transmits().empty());
-  sink.step(PowerOff{}).step(LinkBusy{Link::kRadio, true}).step(Reboot{});
-  EXPECT_TRUE(sink.hear(join_request(6, 1, kDescriptor)).silent());
 }
 
 }  // namespace

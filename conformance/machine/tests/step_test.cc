@@ -16,18 +16,6 @@ namespace {
 using Payload = std::vector<std::uint8_t>;
 using Phase = JoinMote::Phase;
 
-TEST(JoinStep, MoteAsksTheSink) {
-  Device mote(mote_config(5));
-  mote.call(JoinIsland{kDescriptor});
-  EXPECT_EQ(mote.labels(), (std::vector{sent("J1-REQUEST"_rule)}));
-  const Transmit& frame = mote.only_frame();
-  EXPECT_EQ(frame.link, Link::kRadio);
-  EXPECT_FALSE(frame.link_ack);
-  EXPECT_EQ(frame.dest, 1);
-  EXPECT_EQ(frame.src, 5);
-  EXPECT_EQ(mote.only_payload(), (Payload{0x00, 0x01, 0x01, 0x00, 0x43, 0x01}));
-}
-
 TEST(JoinStep, SinkAnswersWithItsClock) {
   Device sink(sink_config());
   sink.now = 2048;
@@ -37,18 +25,6 @@ TEST(JoinStep, SinkAnswersWithItsClock) {
   EXPECT_EQ(sink.only_frame().src, 1);
   // Island 11, mote 5, 2000 ms, the request's number.
   EXPECT_EQ(sink.only_payload(), (Payload{0, 11, 0, 5, 0, 0, 0x07, 0xD0, 0x12, 0x34}));
-}
-
-TEST(JoinStep, J3Time_AReplyThatWaitedHasTheTimeAtWhichItLeaves) {
-  Device sink(sink_config());
-  sink.step(LinkBusy{Link::kRadio, true});
-  sink.hear(join_request(5, 1, kDescriptor));
-  EXPECT_EQ(sink.labels(), (std::vector{followed("N2-QUEUE"_rule)}));
-  sink.now = 3072;
-  sink.step(LinkBusy{Link::kRadio, false});
-  const auto reply = rubicon::JoinReplyView::parse(sink.only_frame().bytes());
-  ASSERT_TRUE(reply);
-  EXPECT_EQ(reply->cur_time(), 3000U);
 }
 
 TEST(JoinStep, MoteAcceptsSetsItsClockAndAcks) {
@@ -155,19 +131,6 @@ TEST(JoinStep, J8_NothingLeavesAfterFail) {
   EXPECT_TRUE(mote.silent());
 }
 
-TEST(JoinStep, J5Stop_WaitingRequestDiesWithAcceptance) {
-  Device mote(mote_config(5));
-  mote.call(JoinIsland{kDescriptor}).done();
-  mote.step(LinkBusy{Link::kRadio, true});
-  mote.join_timer();
-  EXPECT_EQ(mote.state.radio.out.size(), 1U);
-  mote.hear(join_reply(5, {kIsland, 5}, 0, 1));
-  mote.step(LinkBusy{Link::kRadio, false});
-  EXPECT_EQ(mote.only_frame().type, am::kAckJoin);
-  mote.done();
-  EXPECT_TRUE(mote.silent());
-}
-
 TEST(JoinStep, SinkListsAnnouncesAndReports) {
   Device sink(sink_config());
   sink.hear(join_request(5, 100, kDescriptor)).done();
@@ -181,16 +144,6 @@ TEST(JoinStep, SinkListsAnnouncesAndReports) {
                                          16, 0,  11,   0,    5, 1,  0, 0x43, 1}));
   sink.hear(ack_join({kIsland, 1}, {kIsland, 5}, 100, kDescriptor));
   EXPECT_EQ(sink.labels(), (std::vector{ignored("J6-REPEAT"_rule)}));
-}
-
-TEST(JoinStep, DeployedSinkReportsEachJoinOfAListedMote) {
-  Config config = sink_config();
-  config.profile.listed_ignored = false;
-  Device sink(config);
-  list_member(sink, 5, 100);
-  sink.hear(join_request(5, 101, kDescriptor)).done();
-  sink.hear(ack_join({kIsland, 1}, {kIsland, 5}, 101, kDescriptor));
-  EXPECT_EQ(sink.labels(), (std::vector{notified("J6-ADD"_rule), sent("J6-REPORT"_rule)}));
 }
 
 TEST(JoinStep, J3Address_NobodyHasAReservedIdOrTheSinks) {
@@ -217,22 +170,6 @@ TEST(JoinStep, J4Address_OffersOfWhatTheMoteIsNot) {
   }
   mote.hear(join_reply(5, {kIsland, 5}, 0, mote.state.join.seq_num));
   EXPECT_EQ(mote.state.join.phase, Phase::kMember);
-}
-
-TEST(JoinStep, ShortJoinMessagesAreIgnored) {
-  Device sink(sink_config());
-  Device mote(mote_config(5));
-  mote.call(JoinIsland{kDescriptor}).done();
-  OwnFrame request = join_request(5, 1, kDescriptor);
-  request.payload.pop_back();
-  EXPECT_EQ(sink.hear(request).labels(), (std::vector{ignored("WIRE-MOTE-DESC"_rule)}));
-  OwnFrame ack = ack_join({kIsland, 1}, {kIsland, 5}, 1, kDescriptor);
-  ack.payload.resize(9);
-  EXPECT_EQ(sink.hear(ack).labels(), (std::vector{ignored("WIRE-ACK-JOIN"_rule)}));
-  OwnFrame reply = join_reply(5, {kIsland, 5}, 0, 1);
-  reply.payload.pop_back();
-  EXPECT_EQ(mote.hear(reply).labels(), (std::vector{ignored("WIRE-JOIN-REPLY"_rule)}));
-  EXPECT_EQ(mote.state.join.phase, Phase::kJoining);
 }
 
 TEST(JoinStep, SinkAndBaseStationCannotJoin) {
@@ -265,26 +202,6 @@ TEST(SynapticTick, EightOutputsAndEightInputsAtOnce) {
     refused += action.requirement == "N1-FULL"_rule ? 1 : 0;
   }
   EXPECT_EQ(refused, kChannelsRoom - 5);
-}
-
-TEST(Timers, AreThoseThatAreSet) {
-  Device mote(mote_config(5));
-  EXPECT_TRUE(timers(mote.state).empty());
-  mote.now = 10;
-  mote.call(JoinIsland{kDescriptor}).done();
-  ASSERT_EQ(timers(mote.state).size(), 1U);
-  EXPECT_EQ(timers(mote.state)[0].due, 510U);
-  mote.hear(join_reply(5, {kIsland, 5}, 0, 1)).done();
-  EXPECT_TRUE(timers(mote.state).empty());
-  mote.call(Send{{kIsland, 1}, 10, true, {}}).done();
-  mote.now = 20;
-  mote.call(Send{{kIsland, 1}, 10, true, {}}).done();
-  ASSERT_EQ(timers(mote.state).size(), 2U);
-  EXPECT_EQ(timers(mote.state)[1].due, 1020U);
-  EXPECT_EQ(timers(mote.state)[1].timer, (Timer{TimerKind::kAck, 1}));
-  mote.step(TimerDue{{TimerKind::kAck, 1}});
-  EXPECT_EQ(mote.labels(), (std::vector{notified("T3-TIMEOUT"_rule)}));
-  EXPECT_EQ(timers(mote.state).size(), 1U);
 }
 
 TEST(Timers, OneThatIsNotSetChangesNothing) {

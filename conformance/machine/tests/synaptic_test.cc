@@ -15,7 +15,6 @@ constexpr Address kOwn{11, 2};
 constexpr Address kPeer{11, 5};
 constexpr ChannelId kToSink = 0x0002'0001;
 constexpr ChannelId kFromPeer = 0x0005'0002;
-constexpr ChannelId kLocal = 0x0002'0002;
 
 struct Signal {
   ChannelId id;
@@ -133,20 +132,6 @@ TEST_F(SynapticTest, S5_Unknown_SameMoteOfAnotherIsland) {
   }
 }
 
-TEST_F(SynapticTest, S1_Enlarge_CreatingAgainAddsConnections) {
-  EXPECT_TRUE(create_out(3));
-  write(kToSink, 2, 1.5F);
-  EXPECT_TRUE(create_out(4, Mode::kPowerSave));
-  EXPECT_EQ(rule(), "S1-ENLARGE"_rule);
-  EXPECT_EQ(id_, kToSink);
-  ASSERT_EQ(synaptic_.out.size(), 1U);
-  EXPECT_EQ(synaptic_.out[0].size, 7);
-  EXPECT_EQ(synaptic_.out[0].mode, Mode::kReliable);
-  EXPECT_EQ(synaptic_.out[0].value_bits[2], bits_of_float(1.5F));
-  EXPECT_TRUE(write(kToSink, 6, 1));
-  EXPECT_FALSE(write(kToSink, 7, 1));
-}
-
 TEST_F(SynapticTest, S1_Limit_TenConnections) {
   EXPECT_FALSE(create_out(11));
   EXPECT_EQ(rule(), "S1-LIMIT"_rule);
@@ -195,18 +180,6 @@ TEST_F(SynapticTest, S1_Read_RefusesWhatIsNotThere) {
   EXPECT_FALSE(call(ReadInput{kToSink, 0}));  // An output.
 }
 
-TEST_F(SynapticTest, S1_Read_LatestDataBitForBit) {
-  constexpr std::uint32_t kNan = 0xFF80'0001;  // A signalling NaN with a payload.
-  create_in(3);
-  call(StartAllChannels{});
-  hear(kPeer, {1, 2, 3});
-  hear(kPeer, {kNan, 0x8000'0000, 7});
-  EXPECT_EQ(rule(), "S1-READ"_rule);
-  EXPECT_EQ(read_bits(kFromPeer, 0), kNan);
-  EXPECT_EQ(read_bits(kFromPeer, 1), 0x8000'0000U);
-  EXPECT_EQ(read_bits(kFromPeer, 2), 7U);
-}
-
 TEST_F(SynapticTest, S1_Read_ShorterAndLongerDataTakeWhatBothHave) {
   create_in(2);
   call(StartAllChannels{});
@@ -242,18 +215,6 @@ TEST_F(SynapticTest, S1_Clock_DefaultAndSet) {
   EXPECT_EQ(synaptic_.due, now_ + 300);
 }
 
-TEST_F(SynapticTest, S6_Stopped_DataBeforeTheStopIsNotNewAfterTheNextStart) {
-  create_out(1);
-  create_in(1);
-  call(StartAllChannels{});
-  hear(kPeer, {5});
-  EXPECT_TRUE(call(StopChannel{kFromPeer}));
-  EXPECT_TRUE(tick().empty());
-  call(StartChannel{kFromPeer});
-  EXPECT_EQ(tick(), (std::vector<Signal>{{kFromPeer, DataStatus::kOld}}));
-  EXPECT_EQ(read_bits(kFromPeer, 0), 5U);
-}
-
 TEST_F(SynapticTest, S6_Disposed_FreesItsPlaceAndOthersRunOn) {
   create_out(1);
   create_out(2, Mode::kReliable, {11, 8});
@@ -272,20 +233,6 @@ TEST_F(SynapticTest, S6_Disposed_FreesItsPlaceAndOthersRunOn) {
   EXPECT_TRUE(create_out(3));
   EXPECT_EQ(synaptic_.out[1].size, 3);  // Anew, not enlarged.
   EXPECT_FALSE(synaptic_.out[1].started);
-}
-
-TEST_F(SynapticTest, S6_Disposed_LastStartedChannelEndsTheClock) {
-  create_in(1);
-  call(StartAllChannels{});
-  call(DisposeChannel{kFromPeer});
-  EXPECT_EQ(synaptic_.due, 0U);
-  hear(kPeer, {1});
-  EXPECT_EQ(std::get<SynDataReceived>(actions_.notices()[0]).status, DataStatus::kUnknownChannel);
-}
-
-TEST_F(SynapticTest, StartAllOfNothingStartsNoClock) {
-  EXPECT_TRUE(call(StartAllChannels{}));
-  EXPECT_EQ(synaptic_.due, 0U);
 }
 
 // The clock of synaptic channels. A test's name begins with its rule.
@@ -329,106 +276,12 @@ TEST_F(SynapticClock, S2_Phase_StaysWhenTheStepIsSetBeforeTheFirstTick) {
   EXPECT_EQ(synaptic_.due, now_ + 90 + 300);
 }
 
-TEST_F(SynapticClock, S2_Send_NanKeepsItsBits) {
-  create_out(1);
-  const std::uint32_t nan_bits = 0x7FC0'1234;
-  write(kToSink, 0, float_of_bits(nan_bits));
-  call(StartAllChannels{});
-  tick();
-  EXPECT_EQ(sends_[0].value_bits[0], nan_bits);
-}
-
-TEST_F(SynapticClock, S2_Tick_PeriodApartWhateverIsStarted) {
-  create_out(1);
-  create_in(1);
-  call(StartChannel{kToSink});
-  const Ticks first = synaptic_.due;
-  tick();
-  EXPECT_EQ(synaptic_.due, first + 500);
-  now_ += 200;
-  call(StartChannel{kFromPeer});
-  EXPECT_EQ(synaptic_.due, first + 500);
-  tick();
-  EXPECT_EQ(synaptic_.due, first + 1000);
-}
-
-TEST_F(SynapticClock, S2_Tick_WithoutClockNothingHappens) {
-  create_out(1);
-  actions_.clear();
-  tick_synaptic(synaptic_, own_, now_, sends_, actions_);
-  EXPECT_TRUE(sends_.empty() && actions_.notices().empty());
-  EXPECT_EQ(synaptic_.due, 0U);
-}
-
-TEST_F(SynapticClock, S3_PowerSave_ComparesBits) {
-  create_out(1, Mode::kPowerSave);
-  call(StartChannel{kToSink});
-  const float nan_value = float_of_bits(0x7FC0'0000);
-  write(kToSink, 0, nan_value);
-  tick();
-  write(kToSink, 0, nan_value);
-  tick();
-  EXPECT_TRUE(sends_.empty());
-  write(kToSink, 0, 0.0F);
-  tick();
-  write(kToSink, 0, -0.0F);
-  tick();
-  EXPECT_EQ(sends_.size(), 1U);
-}
-
-TEST_F(SynapticClock, S3_PowerSave_FirstTickAfterEachStart) {
-  create_out(1, Mode::kPowerSave);
-  for (int i = 0; i < 2; ++i) {
-    call(StartChannel{kToSink});
-    tick();
-    EXPECT_EQ(sends_.size(), 1U);
-    call(StartChannel{kToSink});  // It is started, so nothing changes.
-    tick();
-    EXPECT_TRUE(sends_.empty());
-    call(StopChannel{kToSink});
-  }
-}
-
-TEST_F(SynapticClock, S4_Local_PowerSaveHandsOverChangesOnly) {
-  create_out(1, Mode::kPowerSave, {kLocalPid, kOwn.devid});
-  create_in(1, kOwn);
-  call(StartAllChannels{});
-  EXPECT_EQ(tick(), (std::vector<Signal>{{kLocal, DataStatus::kNew}}));
-  EXPECT_EQ(tick(), (std::vector<Signal>{{kLocal, DataStatus::kOld}}));
-  EXPECT_TRUE(sends_.empty());
-}
-
 TEST_F(SynapticClock, S4_Local_WithoutInputNothingIsSent) {
   create_out(1, Mode::kReliable, kOwn);
   call(StartAllChannels{});
   EXPECT_TRUE(tick().empty());
   EXPECT_TRUE(sends_.empty());
   EXPECT_EQ(rule(), "S4-LOCAL"_rule);
-}
-
-TEST_F(SynapticClock, S3_Changed_RefusedChangeGoesWithTheNextTick) {
-  create_out(1, Mode::kPowerSave);
-  create_out(1, Mode::kPowerSave, {11, 8});
-  call(StartAllChannels{});
-  tick();
-  ASSERT_EQ(sends_.size(), 2U);
-  keep_change(synaptic_, sends_[1].id);
-  tick();
-  ASSERT_EQ(sends_.size(), 1U);
-  EXPECT_EQ(sends_[0].dest.devid, 8);
-  tick();
-  EXPECT_TRUE(sends_.empty());
-}
-
-// Its id is that of the channel to itself, but the other end is elsewhere.
-TEST_F(SynapticClock, S4_Local_InputFromAnotherIslandTakesNothing) {
-  create_out(1, Mode::kReliable, kOwn);
-  create_in(1, {12, kOwn.devid});
-  EXPECT_EQ(id_, kLocal);
-  write(kLocal, 0, 1.0F);
-  call(StartAllChannels{});
-  EXPECT_EQ(tick(), (std::vector<Signal>{{kLocal, DataStatus::kOld}}));
-  EXPECT_EQ(read_bits(kLocal, 0), 0U);
 }
 
 }  // namespace

@@ -16,7 +16,6 @@ constexpr Address kAll{11, 0xFFFF};
 constexpr Address kEveryIsland{0xFFFF, 4};
 constexpr std::uint8_t kControl = 10;
 constexpr std::uint8_t kMockup = 5;
-constexpr std::uint8_t kConnless = 3;
 
 // Adds a reliable message that the line took at once.
 void sent(AwaitedList& list, const Profile& profile, Ticks now, std::uint16_t seq_num,
@@ -108,14 +107,6 @@ TEST(Awaited, FullListKeepsWhatItHas) {
   EXPECT_TRUE(is_awaited(list, 0));
 }
 
-TEST(Sequence, N12_Error_CountingSkipsTheErrorValue) {
-  Sequence sequence{0xFFFD, false};
-  const AwaitedList none;
-  EXPECT_EQ(next_seq_num(sequence, none), 0xFFFE);
-  EXPECT_EQ(next_seq_num(sequence, none), 0);
-  EXPECT_EQ(next_seq_num(sequence, none), 1);
-}
-
 TEST(Sequence, N12_Reuse_CountingSkipsAwaitedNumbers) {
   AwaitedList list;
   sent(list, Profile{}, 0, 6, kControl, kMote4);
@@ -135,18 +126,6 @@ TEST(Sequence, N12_RandomVisitsEverythingButTheErrorValueAndZero) {
   EXPECT_EQ(seen.count(kNoSeq), 0U);
 }
 
-TEST(Sequence, N12_Reuse_RandomSkipsAwaitedNumbers) {
-  Sequence ahead{77, true};
-  const AwaitedList none;
-  AwaitedList list;
-  for (std::size_t i = 0; i < kAwaitedMax; ++i) {
-    sent(list, Profile{}, 0, next_seq_num(ahead, none), kControl, kMote4);
-  }
-  const std::uint16_t free = next_seq_num(ahead, none);
-  Sequence sequence{77, true};
-  EXPECT_EQ(next_seq_num(sequence, list), free);
-}
-
 TEST(Sequence, N12_RandomLeavesZero) {
   Sequence sequence{0, true};
   const AwaitedList none;
@@ -154,43 +133,6 @@ TEST(Sequence, N12_RandomLeavesZero) {
   EXPECT_NE(first, 0);
   EXPECT_NE(next_seq_num(sequence, none), first);
 }
-
-TEST(Dispatch, T1_Unknown_ApplicationsAreKnownTransportIsNot) {
-  const std::set<int> known = {5, 6, 8, 10, 11};
-  for (int id = 0; id < 256; ++id) {
-    EXPECT_EQ(is_known_app(static_cast<std::uint8_t>(id)), known.count(id) == 1) << id;
-  }
-}
-
-struct AnswerCase {
-  const char* name;
-  bool reliable;
-  Address dest;
-  std::uint8_t trans_id;
-  std::uint8_t app_id;
-  bool answered;
-};
-
-const AnswerCase kAnswers[] = {
-    {"T2_Ack_Mote", true, kMote4, kConnless, kControl, true},
-    {"T2_Ack_BaseStation", true, kPc, kConnless, kMockup, true},
-    {"T2_Unreliable", false, kMote4, kConnless, kControl, false},
-    {"T2_Loop", true, kMote4, 9, kControl, false},
-    {"T2_Synaptic", true, kMote4, 1, 11, false},
-    {"T2_Broadcast", true, kAll, kConnless, kControl, false},
-    {"T2_BroadcastIsland", true, kEveryIsland, kConnless, kControl, false},
-    {"T1_UnknownApp", true, kMote4, kConnless, 200, false},
-    {"T1_TransportAsApp", true, kMote4, kConnless, 3, false},
-    {"T1_UnknownTransport", true, kMote4, 77, kControl, false},
-};
-
-class MustAck : public testing::TestWithParam<AnswerCase> {};
-TEST_P(MustAck, Answers) {
-  const AnswerCase& c = GetParam();
-  EXPECT_EQ(must_ack(c.reliable, c.dest, c.trans_id, c.app_id), c.answered);
-}
-INSTANTIATE_TEST_SUITE_P(Transport, MustAck, testing::ValuesIn(kAnswers),
-                         [](const auto& row) { return std::string(row.param.name); });
 
 struct BodyCase {
   const char* name;
