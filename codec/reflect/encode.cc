@@ -204,10 +204,10 @@ class Encoder {
     }
     if (f.kind == Kind::kBytes) {
       const Value* bytes = f.text ? object.find(std::string(f.name) + "_hex") : nullptr;
-      if (!f.text || f.text->encoding == Encoding::kNone) {
-        opaque(f, value, in, limit);
-      } else {
+      if (holds_characters(f)) {
         text(f, value, bytes, in, limit);
+      } else {
+        opaque(f, value, in, limit);
       }
       return (value ? 1 : 0) + (bytes ? 1 : 0);
     }

@@ -13,6 +13,11 @@
 
 namespace rubric::reflect {
 
+/// Returns whether the field's bytes are characters; a terminator alone makes none of them.
+inline bool holds_characters(const Field& field) {
+  return field.text && field.text->encoding != Encoding::kNone;
+}
+
 /// Returns the name of the encoding of characters.
 const char* encoding_name(const Text& text);
 

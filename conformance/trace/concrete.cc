@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "codec/reflect/decode.h"
+#include "codec/reflect/text_field.h"
 #include "conformance/trace/match.h"
 
 namespace rubric::trace {
@@ -22,6 +23,17 @@ Value show_bytes(const std::string& bytes) {
   const bool text = bytes.size() > 1 && std::all_of(bytes.begin(), bytes.end(),
                                                     [](char c) { return c >= ' ' && c < 0x7F; });
   return text ? Value::quoted(bytes) : Value::bytes(bytes);
+}
+
+Bytes bytes_in_text(const std::string& text) {
+  return Bytes(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
+}
+
+std::optional<std::string> sound_text(const reflect::Field& field, const std::string& bytes) {
+  const Bytes all = bytes_in_text(bytes);
+  const Bytes content = reflect::text_content(field, all);
+  if (reflect::sound_text(field, content) != content.size()) return std::nullopt;
+  return reflect::shown_text(field, all);
 }
 
 /// Makes leaves and parts of the nodes of a decoded message.
@@ -71,14 +83,15 @@ class Flatten {
   }
 
   void opaque(const Node& node, const reflect::Type& owner) {
-    Domain domain{.kind = Domain::Kind::kBytes};
+    const Domain domain = Domain::of(*node.field, owner);
     Leaf& added = leaf(domain);
     added.bytes = bytes_of(node);
+    if (domain.characters) added.text = sound_text(*node.field, added.bytes);
     for (int k = 0; k < owner.interpretation_count; ++k) {
       const reflect::Interpretation& one = owner.interpretations[k];
       if (&owner.fields[one.overlays] == node.field) added.alias = sibling(one.field.name);
     }
-    show(show_bytes(added.bytes));
+    show(added.show());
   }
 
   // Returns the present path with another last name.
@@ -182,11 +195,17 @@ void Bindings::set(std::string_view name, Value value) {
 }
 
 Value Leaf::value() const {
+  if (domain.characters) return show();
   if (domain.kind == Domain::Kind::kBytes) return Value::bytes(bytes);
   return domain.kind == Domain::Kind::kReal ? domain.show(number) : Value::of(number);
 }
 
+// Text that does not say all of its bytes, as those behind its terminator, is shown as bytes.
 Value Leaf::show() const {
+  if (domain.characters) {
+    const bool says_all = text && reflect::says_all(*domain.characters, bytes_in_text(bytes));
+    return says_all ? Value::quoted(*text) : Value::bytes(bytes);
+  }
   return domain.kind == Domain::Kind::kBytes ? show_bytes(bytes) : domain.show(number);
 }
 

@@ -46,7 +46,10 @@ struct Leaf {
   Domain domain;
   std::int64_t number = 0;  ///< Numbers; a real as its 32 bits.
   std::string bytes;
-  /// Returns the number, real or bytes, without names.
+  /// Of characters, as UTF-8: what comes before their terminator and padding. Absent where a byte
+  /// is not of their encoding.
+  std::optional<std::string> text;
+  /// Returns the number, real, text or bytes, without names.
   Value value() const;
   /// Returns the same with names.
   Value show() const;

@@ -9,6 +9,7 @@
 #include "codec/reflect/decode.h"
 #include "codec/reflect/encode.h"
 #include "codec/reflect/schema.h"
+#include "codec/reflect/text_field.h"
 #include "codec/reflect/value.h"
 #include "conformance/trace/match.h"
 #include "conformance/trace/protocol.h"
@@ -60,9 +61,14 @@ std::vector<const Type*> types_of(const Field& field) {
   return types;
 }
 
+/// Returns the member in which the encoder takes the exact bytes of a field of characters.
+std::string exact_bytes_of(std::string_view field) { return std::string(field) + "_hex"; }
+
 bool has_fields(const Type& type, const Tree& tree) {
   return std::all_of(tree.keys.begin(), tree.keys.end(), [&](const std::string& key) {
-    const auto named = [&](const Field& f) { return key == f.name; };
+    const auto named = [&](const Field& f) {
+      return key == f.name || (reflect::holds_characters(f) && key == exact_bytes_of(f.name));
+    };
     return std::any_of(type.fields, type.fields + type.field_count, named) ||
            std::any_of(type.interpretations, type.interpretations + type.interpretation_count,
                        [&](const reflect::Interpretation& one) { return named(one.field); });
@@ -129,6 +135,7 @@ void fill(const Type& type, Tree& tree, Choices& choices) {
     const Field& f = type.fields[i];
     if (f.condition.count) continue;
     Tree* given = find(tree, f.name);
+    if (!given && reflect::holds_characters(f)) given = find(tree, exact_bytes_of(f.name));
     const bool structure = f.kind == reflect::Kind::kStruct;
     if (given && structure && f.repeat == reflect::Repeat::kOnce) {
       if (given->is(Tree::Kind::kObject)) fill_structure(f, *given, choices);
@@ -198,27 +205,25 @@ class Builder {
     Tree root = Tree::of_object();
     for (const FieldValue& field : with_paths(message_, shape_)) {
       const Shape::Alternatives* slots = shape_.find(field.path);
-      const std::optional<Tree> value = tree_of(field, *slots);
-      if (value) put(root, field.path, *value, field.place);
+      const std::optional<Value> value = value_of(field, (*slots)[0]);
+      if (!value) continue;
+      const bool exact = (*slots)[0].domain.characters && value->is(Value::Kind::kBytes);
+      put(root, exact ? exact_bytes_of(field.path) : field.path,
+          tree_of(*value, *slots, field.place), field.place);
     }
     return root;
   }
 
  private:
-  std::optional<Tree> tree_of(const FieldValue& field, const Shape::Alternatives& slots) const {
-    Value value = field.value;
-    if (any_) {
-      const bool open_ended = value.is(Value::Kind::kAny) || value.is(Value::Kind::kVariable) ||
-                              value.is(Value::Kind::kRange);
-      if (open_ended && slots[0].kind != Slot::Kind::kLeaf &&
-          slots[0].kind != Slot::Kind::kAddress) {
-        return std::nullopt;
-      }
-      value = sample(value, slots[0]);
-    } else {
-      value = substituted(value, bindings_, field.place);
+  std::optional<Value> value_of(const FieldValue& field, const Slot& slot) const {
+    const Value& value = field.value;
+    if (!any_) return substituted(value, bindings_, field.place);
+    const bool open_ended = value.is(Value::Kind::kAny) || value.is(Value::Kind::kVariable) ||
+                            value.is(Value::Kind::kRange);
+    if (open_ended && slot.kind != Slot::Kind::kLeaf && slot.kind != Slot::Kind::kAddress) {
+      return std::nullopt;
     }
-    return tree_of(value, slots, field.place);
+    return sample(value, slot);
   }
 
   // Returns some value that the pattern allows.
@@ -233,14 +238,16 @@ class Builder {
       return copy;
     }
     if (slot.kind == Slot::Kind::kAddress) return Value::address(1, 1);
-    if (slot.domain.kind == Domain::Kind::kBytes) return Value::bytes("");
+    if (slot.domain.kind == Domain::Kind::kBytes) return Value::quoted("");
     return Value::of(std::max(slot.domain.implied, slot.domain.min));
   }
 
   static Tree tree_of(const Value& value, const Shape::Alternatives& slots, Place place) {
     switch (value.kind) {
-      case Value::Kind::kBytes:
-      case Value::Kind::kText: return Tree::of_string(hex_of(bytes_in(value, place)));
+      case Value::Kind::kText:
+        if (slots[0].domain.characters) return Tree::of_string(text_in(value, place));
+        [[fallthrough]];
+      case Value::Kind::kBytes: return Tree::of_string(hex_of(bytes_in(value, place)));
       case Value::Kind::kAddress: return address(value, place);
       case Value::Kind::kList: {
         std::vector<Tree> items;
@@ -255,6 +262,10 @@ class Builder {
         [[fallthrough]];
       default: return number(value, slots, place);
     }
+  }
+
+  static std::string text_in(const Value& value, Place place) {
+    return value.negated && value.text.empty() ? "!" : bytes_in(value, place);
   }
 
   static Tree number(const Value& value, const Shape::Alternatives& slots, Place place) {
@@ -448,19 +459,22 @@ void check_possible(const Message& message) {
   const Shape* shape = Schema::get().find(message.name);
   if (!shape || !shape->type) return;
   bool free = false;
+  bool free_bytes = false;
   for (const FieldValue& field : with_paths(message, *shape)) {
-    const Slot::Kind kind = shape->find(field.path)->front().kind;
+    const Slot& slot = shape->find(field.path)->front();
+    const Slot::Kind kind = slot.kind;
     const bool any = field.value.is(Value::Kind::kAny) || field.value.is(Value::Kind::kVariable) ||
                      field.value.negated;
     free = free || any;
+    free_bytes = free_bytes || (any && slot.domain.kind == Domain::Kind::kBytes);
     // A wildcard for a whole part has no values to compare with the spec.
     if (any && kind != Slot::Kind::kLeaf && kind != Slot::Kind::kAddress) return;
   }
   try {
     encode_message(message, {}, true);
   } catch (const TraceError&) {
-    // Free fields may decide which other fields exist.
-    if (!free || !has_bodies(*shape->type)) throw;
+    // Free fields may decide which other fields exist, free bytes have any size.
+    if (!free_bytes && (!free || !has_bodies(*shape->type))) throw;
   }
 }
 

@@ -173,10 +173,17 @@ class Matcher {
 
   // The first use binds.
   bool bound(const Value& want, Value seen) {
-    if (const Value* value = bindings_.find(want.text)) return (*value == seen) != want.negated;
+    if (const Value* value = bindings_.find(want.text)) return equal(*value, seen) != want.negated;
     if (want.negated) return false;
     bindings_.set(want.text, std::move(seen));
     return true;
+  }
+
+  // Text and bytes are equal if their bytes are: an application may be told as bytes what was text.
+  static bool equal(const Value& one, Value other) {
+    if (one.is(Value::Kind::kBytes) && other.is(Value::Kind::kText)) other.kind = one.kind;
+    if (one.is(Value::Kind::kText) && other.is(Value::Kind::kBytes)) other.kind = one.kind;
+    return one == other;
   }
 
   static bool same(const Value& want, const Leaf& leaf) {
@@ -192,8 +199,10 @@ class Matcher {
       case Value::Kind::kReal:
         return real && same_real(std::strtof(want.text.c_str(), nullptr), leaf);
       case Value::Kind::kNames: return number && leaf.domain.number_of(want.text) == leaf.number;
-      case Value::Kind::kBytes:
       case Value::Kind::kText:
+        if (leaf.domain.characters) return leaf.text == want.text;
+        [[fallthrough]];
+      case Value::Kind::kBytes:
         return leaf.domain.kind == Domain::Kind::kBytes && leaf.bytes == want.text;
       default: return false;
     }

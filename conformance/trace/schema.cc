@@ -7,6 +7,7 @@
 #include "codec/reflect/decode.h"
 #include "codec/reflect/encode.h"
 #include "codec/reflect/registry.h"
+#include "codec/reflect/text_field.h"
 
 namespace rubric::trace {
 namespace {
@@ -130,10 +131,13 @@ class Walk {
 
 Domain Domain::of(const Field& field, const Type& owner) {
   Domain domain;
-  const int bits = 8 * field.width_bytes;
+  const bool some_bits = field.kind == reflect::Kind::kBits;
+  const int bits = some_bits ? field.bit_width : 8 * field.width_bytes;
   switch (field.kind) {
     case reflect::Kind::kFloat: domain.kind = Kind::kReal; break;
     case reflect::Kind::kBytes:
+      if (reflect::holds_characters(field)) domain.characters = &field;
+      [[fallthrough]];
     case reflect::Kind::kStruct: domain.kind = Kind::kBytes; break;
     case reflect::Kind::kSint:
       domain.min = -(std::int64_t{1} << (bits - 1));
@@ -145,7 +149,7 @@ Domain Domain::of(const Field& field, const Type& owner) {
     domain.min = field.valid.min;
     domain.max = field.valid.max;
   }
-  domain.derived = measures(field, owner);
+  domain.derived = !some_bits && measures(field, owner);  // The encoder fills no bits in.
   domain.implied = field.expect;
   if (field.valid.kind == reflect::ValidKind::kOneOf && field.valid.one_of_count == 1) {
     domain.implied = field.valid.one_of[0];

@@ -25,6 +25,7 @@ struct Domain {
   std::int64_t implied = -1;  ///< The only value, or the one that is expected; -1: none.
   const reflect::EnumTable* names = nullptr;
   const reflect::MaskTable* mask = nullptr;
+  const reflect::Field* characters = nullptr;  ///< kBytes: the field, if it holds characters.
   friend bool operator==(const Domain&, const Domain&) = default;
 
   static Domain of(const reflect::Field& field, const reflect::Type& owner);

@@ -54,7 +54,7 @@ bool FcsGuess::is_cc24xx() const {
 }
 
 bool FcsGuess::may_be_cc24xx() const {
-  return alike_ >= kAlikeToSay && sound_ == 0 && other_ == 0 && !is_cc24xx();
+  return alike_ >= kAlikeToSay && sound_ == 0 && other_ * 2 <= alike_ && !is_cc24xx();
 }
 
 bool FcsGuess::fits_nowhere() const { return alike_ + other_ >= kAlikeMin && sound_ == 0; }

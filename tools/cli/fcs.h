@@ -28,7 +28,7 @@ class FcsGuess {
  public:
   void take(const Packet& packet);
   bool is_cc24xx() const;
-  /// Returns whether they are too few to know, but all alike.
+  /// Returns whether they are too few to know, or too many are damaged, but most are alike.
   bool may_be_cc24xx() const;
   /// Returns whether no FCS of several frames fits.
   bool fits_nowhere() const;

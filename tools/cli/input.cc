@@ -266,6 +266,12 @@ class Run {
         line, prefix.substr(0, prefix.find_last_not_of(" \t") + 1));
   }
 
+  static bool is_plain_text(std::string_view text) {
+    return std::all_of(text.begin(), text.end(), [](char c) {
+      return (c >= ' ' && c <= '~') || c == '\t' || c == '\r' || c == '\n';
+    });
+  }
+
   static std::string unknown_format(Bytes beginning) {
     if (beginning.size() > 1 && beginning[0] + beginning[1] == 0xFF + 0xFE) {
       return "this is UTF-16 text, as PowerShell writes; 'iconv -f UTF-16 -t UTF-8 FILE' makes "
@@ -283,6 +289,13 @@ class Run {
     }
     if (const PrefixedLine line = find_prefixed_line(beginning); line.number != 0) {
       return unknown_prefix_text(line.number, {line.prefix.begin(), line.prefix.end()});
+    }
+    if (is_plain_text(text)) {
+      const bool parted = text.find_first_of(",:-") != text.npos;
+      return fmt::format(
+          "no line of this text is a packet in hex digits, from the dispatch byte on "
+          "or from a flag 7E{}",
+          parted ? "; if commas, colons or hyphens part its bytes: tr ',:-' ' ' < FILE" : "");
     }
     return "this is not a serial line, forwarder stream, pcap, pcapng or hex text; choose a format "
            "with "

@@ -5,6 +5,9 @@
 #include <vector>
 
 #include "codec/containers/link_record.h"
+#include "codec/generated/tinyos/am_header.h"
+#include "codec/generated/tinyos/enums.h"
+#include "codec/generated/tinyos/mac_ack.h"
 
 namespace rubric::cli {
 namespace {
@@ -66,13 +69,42 @@ InputFormat find_format(std::string_view name) {
   return InputFormat::kUnknown;
 }
 
+// Returns whether the bytes begin with a frame control field of TinyOS.
+bool is_like_radio(Bytes bytes) {
+  const auto begin = tinyos::MacAckView::parse(bytes);
+  if (!begin) return false;
+  const auto control = static_cast<tinyos::FrameControl>(begin->fcf());
+  return control == tinyos::FrameControl::kAck || control == tinyos::FrameControl::kData ||
+         control == tinyos::FrameControl::kDataAckRequest;
+}
+
+// Returns whether no line is an active message, and most could be radio frames without their FCS.
+bool lines_may_be_radio(const Reading& reading, Bytes beginning) {
+  std::uint64_t active = 0, radio = 0, all = 0;
+  auto look = [&](const Packet& packet) {
+    active += tinyos::AmHeaderView::parse(packet.bytes) ? 1 : 0;
+    radio += is_like_radio(packet.bytes) ? 1 : 0;
+    ++all;
+  };
+  make_reader(reading.format, reading.options)->feed(beginning, look);
+  return active == 0 && all != 0 && 2 * radio >= all;
+}
+
 // Decides whether lines of text are radio frames.
 void choose_radio_text(const InputOptions& options, Bytes beginning, Reading& reading) {
   const bool named = options.format == kHexRadio;
-  if (!named && (options.format != "auto" || !is_text(reading.format))) return;
+  const bool automatic = options.format == "auto";
+  if (!named && !is_text(reading.format)) return;
   if (named && detect(beginning) == InputFormat::kLog) reading.format = InputFormat::kLog;
-  const bool with_fcs = options.fcs == "auto" && lines_end_with_fcs(beginning);
-  if (!named && !with_fcs) return;
+  const bool with_fcs =
+      (named || automatic) && options.fcs == "auto" && lines_end_with_fcs(beginning);
+  if (!named && !with_fcs) {
+    if (!lines_may_be_radio(reading, beginning)) return;
+    reading.remark =
+        "none of its lines is an active message; if they are radio frames: "
+        "--input-format hex-radio";
+    return;
+  }
   reading.options.hex_framing = Framing::kRadio;
   reading.options.hex_has_fcs = with_fcs || options.fcs == "crc" || options.fcs == "cc24xx";
   if (!named) {
@@ -97,7 +129,7 @@ void choose_fcs(const InputOptions& options, Bytes beginning, Reading& reading) 
   } else if (guess.may_be_cc24xx()) {
     reading.remark =
         "no FCS of its radio frames fits; if a TI chip put RSSI and link quality there: --fcs "
-        "cc24xx";
+        "cc24xx; if they have none, as Cooja writes them: --fcs none";
   } else if (guess.fits_nowhere()) {
     reading.remark =
         "no FCS of its radio frames fits; if they have none, as Cooja writes them: --fcs none";

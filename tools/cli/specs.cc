@@ -61,7 +61,13 @@ void require_sound(rubricc::Model& model, rubricc::Diagnostics& diagnostics,
                    rubricc::CheckFor what) {
   rubricc::check_model(model, diagnostics, what);
   text::print_harmless(stderr, diagnostics.print_notes() + diagnostics.print());
-  if (!diagnostics.empty()) exit_with(kExitInput);
+  if (diagnostics.empty()) return;
+  if (what == rubricc::CheckFor::kDissector) {
+    text::print(stderr,
+                "rubric: a dissector takes less of a spec than 'rubric decode --spec' reads; "
+                "spec/README.md says what\n");
+  }
+  exit_with(kExitInput);
 }
 
 bool names_file(std::string_view spec) { return spec.ends_with(".ksy"); }

@@ -42,6 +42,8 @@ constexpr const char* kInstallWiresharkFooter =
     "renewed together with rubric; where a file system has no links it is copied. Safe to repeat.\n"
     "Files of others are left alone. Your colouring rules get three before them: faults red,\n"
     "remarkable frames yellow, acknowledgements grey; not with --dir.\n"
+    "Radio frames of PAN 0x22, TinyOS's default group, are dissected; those of another one by\n"
+    "Wireshark's preference RUBRIC, PAN, or 'tshark -o rubric.pan:4660'.\n"
     "\n"
     "Examples:\n"
     "  rubric install-wireshark\n"

@@ -61,9 +61,10 @@ void LineEncoder::encode(const Value& line, OwnedPacket& out) {
   reader_.read(whole, out);
 }
 
-std::string LineEncoder::other_spec(const Value& line) const {
-  const Value* const name =
-      message_ || !line.is(Value::Kind::kObject) ? nullptr : line.find("message");
+std::string LineEncoder::way_out(const Value& line) const {
+  if (message_ || !line.is(Value::Kind::kObject)) return {};
+  if (!line.find("schema")) return "; --as MESSAGE reads the fields of a message alone";
+  const Value* const name = line.find("message");
   if (!name || !name->is(Value::Kind::kString)) return {};
   if (reflect::find_type(protocol_, name->text)) return {};
   const std::string has_it = cli::spec_with_message(protocol_, name->text);
@@ -182,7 +183,7 @@ void EncodedLines::encode_next(Lines& lines) {
     } catch (const RecordError& error) {
       std::string what = error.what();
       if (as_message_ && what.starts_with("fields.")) what.erase(0, sizeof("fields.") - 1);
-      complain(place, what + encoder_.other_spec(value));
+      complain(place, what + encoder_.way_out(value));
     }
   }
 }

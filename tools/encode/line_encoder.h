@@ -82,8 +82,9 @@ class LineEncoder {
   /// Encodes a line. Throws RecordError.
   void encode(const reflect::Value& line, OwnedPacket& out);
 
-  /// Returns which spec has the line's message, if the chosen one has not; else nothing.
-  std::string other_spec(const reflect::Value& line) const;
+  /// Returns what lets the line be encoded: the option for fields alone, or the spec that has its
+  /// message; nothing if that is not what it lacks.
+  std::string way_out(const reflect::Value& line) const;
 
  private:
   std::string_view carrier_name() const;

@@ -122,6 +122,34 @@ class Fcs(Folder):
                          frames)
         self.assertEqual(code, 0)
 
+    def test_too_many_damaged_frames_are_said(self):
+        """As of a sniffer in a busy place: one frame in four fails its CRC."""
+        file = self.pcap([frame + bytes((200, (0x80 if i % 4 else 0) + 100))
+                          for i, frame in enumerate(self.radio_frames())])
+        code, _, err = rubric("decode", file)
+        self.assertEqual(code, 1)
+        self.assertIn("--fcs cc24xx", err)
+        out = rubric("decode", "--fcs", "cc24xx", "--filter", "error", file)[1]
+        self.assertEqual(out.count(b"!! fcs at"), (len(self.radio_frames()) + 3) // 4)
+
+    def test_radio_frames_as_text_are_told_from_packets(self):
+        lines = "".join(frame.hex(" ") + "\n" for frame in self.radio_frames())
+        for words in ((), ("--input-format", "log"), ("--input-format", "hex")):
+            err = rubric("decode", *words, stdin=lines)[2]
+            self.assertEqual(err.count("if they are radio frames: --input-format hex-radio"), 1)
+        self.assertEqual(rubric("decode", "--input-format", "hex-radio", stdin=lines)[::2], (0, ""))
+        packet = CONFIG_PACKET.decode()
+        self.assertEqual(rubric("decode", stdin=packet + lines)[2].count("hex-radio"), 0)
+
+    def test_text_without_packets(self):
+        for text, parted in ((b"Booted\nhello\n", False), (b"0x00, 0xff, 0xff, 0x00\n", True),
+                             (b"00:ff:ff:00:00:03:00:25:0a:00:0c\n", True)):
+            for words in (("decode",), ("stats",)):
+                code, _, err = rubric(*words, stdin=text)
+                self.assertEqual(code, 66)
+                self.assertIn("no line of this text is a packet in hex digits", err)
+                self.assertEqual("tr ',:-' ' '" in err, parted, err)
+
     def test_an_empty_file_is_named(self):
         file = self.folder / "empty.pcap"
         file.touch()
@@ -140,6 +168,8 @@ class Fcs(Folder):
         line = b'\xef\xbb\xbf{"type":10,"value":12}\r\n'
         self.assertEqual(rubric("encode", "--as", "config", stdin=line),
                          (0, b"00 FF FF 00 00 03 00 25 0A 00 0C\n", ""))
+        self.refused(("encode",), "; --as MESSAGE reads the fields of a message alone", 66,
+                     stdin=line)
 
 
 class Encode(Folder):

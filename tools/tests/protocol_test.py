@@ -132,6 +132,57 @@ class Protocol(testing.Folder):
         self.assertIn("2 cases compared, 1 differ", err)
         self.assertIn("case answer.others.difference", out)
 
+    def test_text_and_bits_are_compared(self):
+        probes = self.new()
+        (probes / "probes.ksy").write_text(
+            "meta: {id: probes, endian: be, encoding: UTF-8}\n"
+            "types:\n"
+            "  request:\n    -am-type: 0xa1\n    seq:\n"
+            "      - {id: loud, type: b1}\n      - {id: size, type: b7}\n"
+            "      - {id: who, type: str, size: size}\n"
+            "  reading:\n    -am-type: 0xa2\n    seq:\n"
+            "      - {id: loud, type: b1}\n      - {id: size, type: b7}\n"
+            "      - {id: parts, size: size}\n      - {id: who, type: strz}\n")
+        self.change(probes / "app.yaml", "asked: {by: u2}", "asked: {who: bytes}")
+        node = probes / "node.py"
+        self.change(node, "by=src", "who=payload[1:]")
+        self.change(node, "self.answer(src, payload[0])", "self.answer(src, payload[1:])")
+        self.change(node, 'struct.pack(">BH", number, self.value)',
+                    'b"\\x81\\x07" + number + b"\\0"')
+        case = probes / "cases/probes.rtr"
+        case.write_text(
+            "%rtr 1\n%node n5 node id=5 iut\n%node n1 node id=1\ncase a\n"
+            '0 n5 < rA am=1->5 request(loud=0 size=4 who="Gr\u00fc")\n'
+            '0..response n5 > app asked("Gr\u00fc")  [ANSWER-NUMBER]\n'
+            '0..response n5 > rA reading(loud=1 size=1 parts=x07 who="Gr\u00fc")  [ANSWER-VALUE]\n'
+            "50 n5 < rA am=1->5 request(loud=1 size=2 who=x4142)\n"
+            "0..response n5 > rA reading(who=$w ...)\n"
+            "50 n5 < rA am=1->5 request(size=2 who=$w ...)\n"
+            "0..response n5 > app asked($w)\n"
+            "0..response n5 > rA reading(who=x414200 ...)  [ANSWER-OTHERS]\n")
+        judge = ("test", "--protocol", "probes", "--target", "python3 probes/node.py")
+        code, out, err = self.rubric(*judge)
+        self.assertEqual((code, err), (0, ""), out)
+        for old, new, expected in [
+                (r"\x81", r"\x01", "ANSWER-VALUE"), (r"\0", "", "ANSWER-VALUE"),
+                ("+ number +", "+ number.upper() +", "ANSWER-VALUE"),
+                ("who=payload[1:]", "who=payload", "ANSWER-NUMBER")]:
+            with self.subTest(old):
+                before = node.read_text()
+                self.change(node, old, new)
+                code, out, err = self.rubric(*judge)
+                node.write_text(before)
+                self.assertEqual((code, err), (1, ""), out)
+                self.assertIn(f"  Broken: {expected}\n", out)
+        for old, new, expected in [
+                ("size=4", "size=128", ":5:34: size: expected a number from 0 to 127, given '128'"),
+                ("Gr\u00fc\")\n0..response n5 > app", "Gr\\xff\")\n0..response n5 > app", "UTF-8")]:
+            before = case.read_text()
+            self.change(case, old, new)
+            code, out, err = self.rubric(*judge)
+            case.write_text(before)
+            self.assertIn(expected, out + err)
+
     def test_parameters_are_built_or_skipped(self):
         probes = self.new()
         case = probes / "cases/probes.rtr"

@@ -382,7 +382,7 @@ class File(Folder):
         columns = rubric("decode", *args, "--format", "csv", "--fields", "name,tail",
                          stdin=line.replace("6869", "3D1B2C"))
         self.assertEqual(columns.stdout.splitlines()[1], 'ab,"=\ufffd,"')
-        self.assertIn("Only if byte 0 % 16 / 8", rubric("explain", *args[:2], "texts").stdout)
+        self.assertIn("Only if flag", rubric("explain", *args[:2], "texts").stdout)
 
     def test_text_is_read_and_written_as_generated(self):
         args = ["--spec", self.file(TEXTS, "texts.ksy")]
@@ -469,8 +469,24 @@ class File(Folder):
         self.assertIn("'n' is at no constant position", refused.stderr)
 
     def test_text_and_bits_are_refused_for_a_dissector(self):
-        self.refused(("install-wireshark", "--dir", str(self.folder), "--spec",
-                      self.file(TEXTS, "texts.ksy")), "rubric --spec reads text", 66)
+        for says in ("rubric --spec reads text", "a dissector takes less of a spec than 'rubric "
+                     "decode --spec' reads; spec/README.md says what\n"):
+            self.refused(("install-wireshark", "--dir", str(self.folder), "--spec",
+                          self.file(TEXTS, "texts.ksy")), says, 66)
+
+    def test_conditions_by_bits_are_explained_by_their_names(self):
+        for order in ("be", "le"):
+            file = self.file(f"meta: {{id: flags, endian: be, bit-endian: {order}}}\n"
+                             "types:\n  one:\n    -am-type: 1\n    seq:\n"
+                             "      - {id: high, type: b3}\n      - {id: there, type: b1}\n"
+                             "      - {id: wide, type: b12, enum: names}\n"
+                             "      - {id: a, type: u1, if: there}\n"
+                             "      - {id: b, type: u1, if: 'wide == names::two'}\n"
+                             "      - {id: c, size: high + wide.to_i}\n"
+                             "enums: {names: {2: two}}\n", "flags.ksy")
+            layout = rubric("explain", "--spec", file, "one").stdout
+            for text in ("Only if there\n", "Only if wide == two\n", "  high + wide  "):
+                self.assertIn(text, layout)
 
     def test_imports_beside_the_file_win_over_shipped_ones(self):
         shipped = pathlib.Path("spec/wire/run_time/blink_to_radio.ksy").read_text(encoding="utf-8")

@@ -66,7 +66,8 @@ void check_repeat(Check& check, Field& field) {
   if (field.repeat == RepeatKind::kOnce) return;
   const SourcePlace& place = place_of(field.places, "repeat", field.place);
   if (field.kind == ValueKind::kBytes || field.extent != ExtentKind::kOwn) {
-    check.error(place, "repeat of bytes", "numbers, masks or structures can repeat");
+    check.error(place, "repeat of bytes",
+                "numbers, masks or structures can repeat: put it into a type of its own");
     check.open.insert(&field);
   }
   if (field.repeat == RepeatKind::kCount && !field.count) check.open.insert(&field);

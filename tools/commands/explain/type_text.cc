@@ -173,6 +173,30 @@ std::string path_at(const Type& type, std::int32_t offset, const Field** field) 
   return fmt::format("byte {}", offset);
 }
 
+/// Returns how many of the steps from `at` on read the bits of `f`: its bytes joined, without the
+/// bits above and below; 0 if they read something else.
+int steps_of_bits(const Field& f, const Type& type, const Expr& expr, int at) {
+  const auto index = static_cast<std::uint16_t>(&f - type.fields + 1);
+  const auto is = [&](Op op, std::int64_t value, std::uint16_t from) {
+    const ExprStep& step = expr.steps[at];
+    return at++ < expr.count && step.op == op && step.value == value && step.from == from;
+  };
+  const auto is_by = [&](std::int64_t value, Op op) {
+    return is(Op::kConst, value, 0) && is(op, 0, 0);
+  };
+  const int begin = at;
+  const std::uint16_t from = expr.steps[at].from == 0 ? 0 : index;
+  const int top = f.bit_width + f.bit_shift - 8 * (f.width_bytes - 1);
+  for (int i = 0; i < f.width_bytes; ++i) {
+    const int byte = f.little_endian ? f.width_bytes - 1 - i : i;
+    if (i > 0 && !is_by(256, Op::kMul)) return 0;
+    if (!is(Op::kLoadU8, std::max(f.fixed_offset, 0) + byte, from)) return 0;
+    if (i == 0 && top < 8 && !is_by(std::int64_t{1} << top, Op::kMod)) return 0;
+    if (i > 0 && !is(Op::kAdd, 0, 0)) return 0;
+  }
+  return is_by(std::int64_t{1} << f.bit_shift, Op::kDiv) ? at - begin : 0;
+}
+
 }  // namespace
 
 std::string path_of(const ExprStep& load, const Type& type, const Field** field) {
@@ -240,7 +264,15 @@ std::string expr_text(const Expr& expr, const Type& type) {
   std::vector<Operand> stack;
   for (int i = 0; i < expr.count; ++i) {
     const ExprStep& step = expr.steps[i];
-    if (step.op <= Op::kLoadLe32) {
+    int taken = 0;
+    for (int k = 0; k < type.field_count && taken == 0; ++k) {
+      const Field& f = type.fields[k];
+      if (f.kind == Kind::kBits) taken = steps_of_bits(f, type, expr, i);
+      if (taken != 0) stack.push_back({.text = f.name, .field = &f});
+    }
+    if (taken != 0) {
+      i += taken - 1;
+    } else if (step.op <= Op::kLoadLe32) {
       stack.push_back(operand(step, type));
     } else if (step.op == Op::kParam) {
       stack.push_back({type.params[step.value]});

@@ -1,4 +1,4 @@
-# expect: 11:17: repeat of bytes; numbers, masks or structures can repeat
+# expect: 11:17: repeat of bytes; numbers, masks or structures can repeat: put it into a type of its own
 meta:
   id: bad
   endian: be
