@@ -30,7 +30,7 @@ Acks::Acks(Context& context, std::size_t devices)
       arrived_(devices),
       owed_(devices, 0),
       orders_(devices),
-      acked_apps_(devices),
+      apps_(devices),
       early_(devices) {}
 
 void Acks::begin_life(std::uint16_t node, std::int64_t since_us) {
@@ -92,25 +92,26 @@ bool Acks::waits(std::uint16_t node, const Arrived& arrived, std::int64_t now_us
   return now_us <= context_.due_us(node, arrived.whole_us) + longer_us;
 }
 
-void Acks::repeated(std::uint16_t node, const Net& net, std::int64_t now_us) {
+// Returns the last that came to the node with these addresses and this number.
+Arrived* Acks::find(std::uint16_t node, const Net& net) {
   Ring<Arrived, kRoom>& ring = arrived_[node];
   for (std::size_t i = 0; i < ring.size(); ++i) {
-    Arrived& arrived = ring.newest(i);
-    if (!same_message(arrived.net, net)) continue;
-    if (arrived.copies < 255) ++arrived.copies;
-    arrived.again_us = now_us;
-    return;
+    if (same_message(ring.newest(i).net, net)) return &ring.newest(i);
   }
+  return nullptr;
+}
+
+void Acks::repeated(std::uint16_t node, const Net& net, std::int64_t now_us) {
+  Arrived* const arrived = find(node, net);
+  if (arrived == nullptr) return;
+  if (arrived->copies < 255) ++arrived->copies;
+  arrived->again_us = now_us;
 }
 
 bool Acks::came(std::uint16_t node, const Net& net) {
-  Ring<Arrived, kRoom>& ring = arrived_[node];
-  for (std::size_t i = 0; i < ring.size(); ++i) {
-    if (!same_message(ring.newest(i).net, net)) continue;
-    ring.newest(i).came = true;
-    return true;
-  }
-  return false;
+  Arrived* const arrived = find(node, net);
+  if (arrived != nullptr) arrived->came = true;
+  return arrived != nullptr;
 }
 
 // Returns whether by its log the node was not given the message, so that it cannot know it.
@@ -121,25 +122,21 @@ bool Acks::never_came(std::uint16_t node, const Arrived& arrived) const {
 }
 
 void Acks::surely(std::uint16_t node, const Net& net, std::int64_t now_us, bool may, bool no_room) {
-  Ring<Arrived, kRoom>& ring = arrived_[node];
-  for (std::size_t i = 0; i < ring.size(); ++i) {
-    Arrived& arrived = ring.newest(i);
-    if (!same_message(arrived.net, net)) continue;
-    if (no_room && !arrived.sure) {
-      arrived.no_room = true;
-      arrived.must_ack = false;
-    }
-    if (arrived.must_ack && !arrived.sure && arrived.acks == 0) ++owed_[node];
-    if (!arrived.sure)
-      arrived.order = ++orders_[node].came;  // Others sent later may have come first.
-    arrived.sure = true;
-    arrived.whole_us = std::max(arrived.whole_us, now_us);
-    arrived.net = net;  // As it was given, perhaps without the bytes after its content.
-    if (may && (arrived.forbidden == "N10-OFF"_rule || arrived.forbidden == "J11-HEAR"_rule)) {
-      arrived.forbidden = ReqId::kNone;
-      arrived.ackable = arrived.to_self && wants_ack(net);
-    }
-    return;
+  Arrived* const found = find(node, net);
+  if (found == nullptr) return;
+  Arrived& arrived = *found;
+  if (no_room && !arrived.sure) {
+    arrived.no_room = true;
+    arrived.must_ack = false;
+  }
+  if (arrived.must_ack && !arrived.sure && arrived.acks == 0) ++owed_[node];
+  if (!arrived.sure) arrived.order = ++orders_[node].came;  // Later ones may have come first.
+  arrived.sure = true;
+  arrived.whole_us = std::max(arrived.whole_us, now_us);
+  arrived.net = net;  // As it was given, perhaps without the bytes after its content.
+  if (may && (arrived.forbidden == "N10-OFF"_rule || arrived.forbidden == "J11-HEAR"_rule)) {
+    arrived.forbidden = ReqId::kNone;
+    arrived.ackable = arrived.to_self && wants_ack(net);
   }
 }
 
@@ -198,10 +195,13 @@ void Acks::sent(std::uint16_t node, const Observation& seen, const Net& ack,
                   "the ack of " + name_of(best->net));
     judge_ack_order(node, seen, *best);
   }
-  acked_apps_[node].insert(ack.app_id);
-  context_.findings.kept("T2-ACK"_rule);
-  context_.findings.kept("T2-ONCE"_rule);
-  context_.findings.kept("T2-CONTENT"_rule);
+  apps_[node].acked.insert(ack.app_id);
+  // So it has come, and an application of which the log tells gets it.
+  const bool logged = apps_[node].delivered.contains(ack.app_id);
+  best->sure = best->sure || (logged && !context_.device(node).hearing);
+  for (const ReqId rule : {"T2-ACK"_rule, "T2-ONCE"_rule, "T2-CONTENT"_rule}) {
+    context_.findings.kept(rule);
+  }
 }
 
 // Judges whether an ack of what came later by the same line left before this one by a log.
@@ -325,13 +325,9 @@ void Acks::delivered(std::uint16_t node, const Observation& seen,
     Arrived& arrived = ring.newest(i);
     if (arrived.net.src != received.src || never_came(node, arrived)) continue;
     const bool sound = arrived.net.sound;
-    if (sound && is_nobodys(arrived.net) && equal(arrived.net.body(), received.data)) {
-      nobodys = &arrived;
-    }
-    if (sound &&
-        (arrived.net.app_id != received.app_id || !equal(arrived.net.body(), received.data))) {
-      continue;
-    }
+    const bool same = sound && equal(arrived.net.body(), received.data);
+    if (same && is_nobodys(arrived.net)) nobodys = &arrived;
+    if (sound && (arrived.net.app_id != received.app_id || !same)) continue;
     // A node may make anything of a malformed message.
     const std::size_t came = arrived.net.payload.size();
     if (!sound && came > 2 &&
@@ -373,12 +369,15 @@ void Acks::delivered(std::uint16_t node, const Observation& seen,
          {}});
   }
   if (rank(*best) >= 2) {
+    apps_[node].delivered.insert(received.app_id);
     judge_order(node, seen, *best);
     ++best->delivered;
     const bool owed = best->must_ack && best->sure;
     best->must_ack = best->must_ack || (best->ackable && !best->no_room);
-    best->sure = true;  // So it did arrive, and was taken.
-    if (best->must_ack && !owed && best->acks == 0) ++owed_[node];
+    // So it did arrive, and was taken, unless a later one that says the same has escaped.
+    best->sure = best->sure || now <= context_.due_us(node, best->whole_us) ||
+                 context_.without(best->sender, best->place.time_us, now) == Severity::kFail;
+    if (best->must_ack && best->sure && !owed && best->acks == 0) ++owed_[node];
     context_.findings.kept("T1-DELIVER"_rule);
     if (best->must_ack) context_.findings.kept("T2-DELIVER"_rule);
     return;
@@ -386,6 +385,7 @@ void Acks::delivered(std::uint16_t node, const Observation& seen,
   const bool forbidden = best->forbidden != ReqId::kNone;
   Severity severity = best->weak ? Severity::kWeak : Severity::kFail;
   if (!forbidden) severity = context_.without(best->sender, best->place.time_us, now, node);
+  if (!forbidden && context_.by_peis(node, received.src.pid)) severity = Severity::kInconclusive;
   context_.report(forbidden ? best->forbidden : "N2-IN-ORDER"_rule, severity, seen.place, node,
                   {"The application gets " + name_of(best->net) +
                        (forbidden ? ", which the node should have dropped or ignored."
@@ -468,7 +468,8 @@ void Acks::missing_ack(std::uint16_t node, Arrived& arrived, std::int64_t now_us
       device.role == machine::Role::kMote ||
       (device.role == machine::Role::kSink && arrived.net.src.devid != machine::kNullDevid);
   Severity severity = Severity::kFail;
-  if (arrived.doubtful || context_.crowded(node, arrived.place.time_us) ||
+  if (arrived.doubtful || context_.by_peis(node, arrived.net.src.pid) ||
+      context_.crowded(node, arrived.place.time_us) ||
       context_.who.damaged(arrived.place.time_us, now_us)) {
     severity = Severity::kInconclusive;
   } else if (by_radio) {

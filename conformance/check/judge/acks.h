@@ -117,13 +117,14 @@ class Acks {
   void interrupted(std::uint16_t node, std::int64_t now_us, bool still_gets = false);
   /// Returns whether the node has acked a message for that application, so that it has one.
   bool acks_for(std::uint16_t node, std::uint8_t app_id) const {
-    return acked_apps_[node].contains(app_id);
+    return apps_[node].acked.contains(app_id);
   }
   void finish();
 
  private:
   static constexpr std::size_t kRoom = 64;
 
+  Arrived* find(std::uint16_t node, const Net& net);
   bool waits(std::uint16_t node, const Arrived& arrived, std::int64_t now_us);
   void close(std::uint16_t node, Arrived& arrived);
   void missing_ack(std::uint16_t node, Arrived& arrived, std::int64_t now_us, bool lives);
@@ -148,7 +149,11 @@ class Acks {
     std::array<std::uint32_t, 3> delivered{};
   };
   std::vector<Order> orders_;
-  std::vector<std::set<std::uint8_t>> acked_apps_;  ///< APPIDs of messages that a node acked.
+  struct Apps {                        // APPIDs of messages,
+    std::set<std::uint8_t> acked;      // that the node acked,
+    std::set<std::uint8_t> delivered;  // that by its log its application got.
+  };
+  std::vector<Apps> apps_;
   struct Early {
     machine::Address to;
     std::uint16_t acked = 0;

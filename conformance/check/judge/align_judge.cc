@@ -1,7 +1,6 @@
 // judge(), as observation.h declares it. It judges a run in more than one way where only common
 // frames tell the order of its files, or where the clock of a recorder stepped.
 #include <algorithm>
-#include <cstdlib>
 #include <iterator>
 #include <limits>
 #include <map>
@@ -227,14 +226,17 @@ struct Blamed {
   std::vector<Finding> findings;
   std::int64_t later_us = 0;
 
-  // Two files may show one frame, so that a finding of it lies in the one or in the other.
+  // Two files may show one frame, so that a finding of it lies in the one or in the other. An
+  // episode may begin earlier here, by what is found here alone.
   bool has(const Finding& one, std::int64_t near_us) const {
     return std::ranges::any_of(findings, [&](const Finding& other) {
       if (!blames(other) || other.requirement != one.requirement || other.node != one.node) {
         return false;
       }
-      const std::int64_t apart_us = other.place.time_us - later_us - one.place.time_us;
-      return name_of(other) == name_of(one) || std::abs(apart_us) <= near_us;
+      const std::int64_t from_us = other.place.time_us - later_us - near_us;
+      const std::int64_t to_us = other.last.time_us - later_us + near_us;
+      const bool overlap = from_us <= one.last.time_us && one.place.time_us <= to_us;
+      return overlap || name_of(other) == name_of(one);
     });
   }
 };

@@ -170,7 +170,7 @@ void Announcements::refuse_report(SinkWatch& sink, PairWatch& watch, const Place
   ReqId rule = "J6-ADD"_rule;
   const bool has_ack = watch.ack.frame != 0;
   // The request to which the ack belongs may have escaped as well.
-  std::int64_t since = context_.run.start_us;
+  std::int64_t since = context_.run.start_us - 1;
   if (has_ack && watch.asked) since = std::min(watch.ack.time_us, watch.request.time_us);
   Severity severity = context_.without_mote(mote_am, since, at.time_us, sink.device);
   const bool may_have_come = !context_.options.start_cold || context_.lossy_air;
@@ -263,7 +263,7 @@ void Announcements::overdue_reports(SinkWatch& sink, std::int64_t end_us) {
         context_.due_us(sink.device, std::max(watch.admitted_us, sink.serial_on_us),
                         machine::Link::kSerial) +
         (sink.behind ? kFrameUs : 0);
-    const bool ahead = watch.admitted.time_us - watch.ahead_us <= context_.options.skew_us;
+    const bool ahead = watch.is_ahead(context_.options.skew_us);
     const bool comes = now_us < watch.comes_us;
     if (watch.report_due && now_us > due_us && !ahead && !comes) due.push_back(am);
   }
@@ -336,6 +336,7 @@ void Announcements::unannounced(const SinkWatch& sink, std::uint16_t mote_am,
   const std::int64_t due_us =
       context_.due_us(sink.device, watch.admitted_us, machine::Link::kRadio);
   if (end_us <= due_us || !context_.tells<machine::MoteJoined>(sink.device, due_us)) return;
+  if (watch.is_ahead(context_.options.skew_us)) return;  // Perhaps that was the event.
   const auto owes = [](const SinkHypothesis& h) { return !h.unknown && h.owes_notice; };
   if (!std::all_of(watch.set.begin(), watch.set.end(), owes)) return;
   context_.report("J6-ADD"_rule,

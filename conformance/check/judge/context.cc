@@ -516,7 +516,7 @@ Severity Context::without_mote(std::uint16_t am, std::int64_t from_us, std::int6
 
 Severity Context::without_ever(std::uint16_t cause, std::int64_t to_us) const {
   if (!options.start_cold) return Severity::kInconclusive;
-  return without(cause, run.start_us, to_us);
+  return without(cause, run.start_us - 1, to_us);  // Before its first frame one may have escaped.
 }
 
 void Context::report(ReqId requirement, Severity severity, const Place& at, std::uint16_t node,

@@ -151,6 +151,12 @@ struct Context {
            begun_us_[node] >= time_us &&
            time_us - std::max(run.start_us, run.nodes[node].from_us) <= before_us;
   }
+  /// Returns whether the node's log begins later than the run, at most `before_us` before then:
+  /// what came before it is not told, whether the run begins cold or not.
+  bool log_late(std::uint16_t node, std::int64_t time_us, std::int64_t before_us) const {
+    return node < logs_us_.size() && logs_us_[node].first > run.start_us &&
+           time_us - logs_us_[node].first <= before_us && begun_us_[node] >= time_us;
+  }
   /// Returns what was seen then, or later by at most the skew of the taps, and may be the cause;
   /// nullptr if nothing.
   template <class Cause>

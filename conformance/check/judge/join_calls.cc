@@ -175,8 +175,9 @@ void JoinCalls::told(std::uint16_t mote, const Observation& seen, const machine:
   const std::int64_t call_us = context_.join_call_us(mote) + context_.response_us(mote);
   const bool before_log = context_.begun_before(mote, now, call_us);
   if (calls.logged && calls.open == 0) {
-    context_.report("J5-ONCE"_rule, before_log ? Severity::kInconclusive : Severity::kFail,
-                    seen.place, mote,
+    const bool open = before_log || context_.log_late(mote, now, call_us);
+    context_.report("J5-ONCE"_rule, open ? Severity::kInconclusive : Severity::kFail, seen.place,
+                    mote,
                     {std::string("joined(") + (joined.success ? "SUCCESS" : "FAIL") +
                          ") although no joinIsland call is open.",
                      "One joined event for each call.",
@@ -421,7 +422,11 @@ void JoinCalls::closes(std::uint16_t mote, std::int64_t end_us) {
   if (calls_[mote].logged && calls_[mote].open == 0) return;  // It had its event.
   const std::int64_t over_us =
       device.whole ? last_expiry_us(mote, h) : h.first_request_us + context_.join_call_us(mote);
-  if (end_us <= context_.due_us(mote, over_us)) return;
+  const std::int64_t due_us = context_.due_us(mote, over_us);
+  // A log that goes on after the call, and ends before, says nothing.
+  const std::int64_t log_end_us = context_.log_end_us(mote);
+  const bool ended = log_end_us <= due_us && log_end_us > calls_[mote].called.time_us;
+  if (end_us <= due_us || ended) return;
   Place at;
   at.time_us = h.first_request_us;
   context_.report("J8-FAIL"_rule, Severity::kFail, at, mote,

@@ -289,7 +289,7 @@ void Judge::called(const Observation& seen, std::uint16_t device) {
     asked_island_[device] = set->island;
     const bool owes = !interfaces_.switched_off(device, machine::Link::kSerial) &&
                       !machine::is_reserved(set->island) && who_.devices[device].whole;
-    if (owes && is(device, Role::kBaseStation)) peis_.asked_island(device, seen, set->island);
+    if (is(device, Role::kBaseStation)) peis_.asked_island(device, seen, set->island, owes);
     if (!who_.devices[device].whole) {
       originals_.moved(device);
       peis_.moved(device);
@@ -354,6 +354,13 @@ machine::Address Judge::address_of(std::uint16_t node) const {
 // Takes the link's own repetition, or a log's line that shows who received a frame.
 void Judge::repeated(std::uint32_t index, const Observation& seen, const Mark& mark) {
   if (seen.kind == Kind::kRadio) joins_heard(index, seen, mark);
+  if (const std::int32_t id = set_island_id(seen.frame); id >= 0 && seen.to_mote) {
+    const std::uint16_t sink =
+        mark.device == kNobody ? mark.receiver : who_.devices[mark.device].partner;
+    const bool sure = serial_acked(run_, index) || mark.receiver == sink;
+    if (!sure || sink == kNobody) return;
+    return island_told(sink, seen.place, static_cast<std::uint16_t>(id), true);
+  }
   Net net;
   if (seen.frame.type != am::kNet || !parse_net(seen.frame.payload, net)) return;
   if (mark.receiver != kNobody) return surely(seen, mark, net);
@@ -485,16 +492,8 @@ void Judge::serial(std::uint32_t index, const Observation& seen, const Mark& mar
   }
   if (const std::int32_t id = set_island_id(seen.frame); id >= 0 && seen.to_mote) {
     if (!seen.received) own_island_.erase(mark.device);  // It is what it now tells its sink.
-    const auto island = static_cast<std::uint16_t>(id);
-    if (interfaces_.switched_off(sink, machine::Link::kSerial)) {  // It hears nothing.
-      return sinks_.missed_island(sink, island);
-    }
     const bool sure = serial_acked(run_, index) || mark.receiver == sink;
-    acks_.interrupted(sink, seen.place.time_us);
-    announcements_.ends(sink, seen.place.time_us);
-    sinks_.set_island(sink, island, seen.place, sure);
-    forwarding_.set_island(sink, island, seen.place.time_us, sure);
-    return;
+    return island_told(sink, seen.place, static_cast<std::uint16_t>(id), sure);
   }
   if (seen.to_mote && seen.frame.type == am::kConfig) sinks_.configured(sink, seen.frame);
   // In a whole log a late report is missing; else it may be this very frame (decision 125).

@@ -42,6 +42,17 @@ void Judge::cut_off(const Observation& seen, std::uint16_t sender) {
                    {}});
 }
 
+// Takes SET_ISLAND_ID that a sink is given, for sure or perhaps.
+void Judge::island_told(std::uint16_t sink, const Place& at, std::uint16_t island, bool sure) {
+  if (interfaces_.switched_off(sink, machine::Link::kSerial)) {  // It hears nothing.
+    return sinks_.missed_island(sink, island);
+  }
+  acks_.interrupted(sink, at.time_us);
+  announcements_.ends(sink, at.time_us);
+  sinks_.set_island(sink, island, at, sure);
+  forwarding_.set_island(sink, island, at.time_us, sure);
+}
+
 // Takes the island that a sink shows: it may not have taken the one that it was told.
 void Judge::island_shown(std::uint16_t sink, std::int64_t now_us) {
   forwarding_.set_island(sink, sinks_.island(sink), now_us, true);

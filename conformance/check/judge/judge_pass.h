@@ -50,6 +50,7 @@ class Judge {
   // Takes a reply. Motes whose log has what they were given hear nothing else.
   void replied(std::uint32_t index, const Observation& seen, const Mark& mark, const Reply& reply);
   void cut_off(const Observation& seen, std::uint16_t sender);
+  void island_told(std::uint16_t sink, const Place& at, std::uint16_t island, bool sure);
   void island_shown(std::uint16_t sink, std::int64_t now_us);
   void role_broken(ReqId rule, const char* what, const Observation& seen, std::uint16_t device);
   void radio_net(std::uint32_t index, const Observation& seen, const Mark& mark, const Net& net);

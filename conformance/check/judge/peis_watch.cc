@@ -207,8 +207,10 @@ void PeisWatch::overdue(std::uint16_t base, Messages& messages, bool up, std::in
   }
 }
 
-void PeisWatch::asked_island(std::uint16_t base, const Observation& call, std::uint16_t island) {
-  bases_[base].asked.push_back({call.place, island});
+void PeisWatch::asked_island(std::uint16_t base, const Observation& call, std::uint16_t island,
+                             bool owes) {
+  bases_[base].called = true;
+  if (owes) bases_[base].asked.push_back({call.place, island});
 }
 
 void PeisWatch::refused_island(std::uint16_t base, std::uint16_t island) {
@@ -227,6 +229,16 @@ void PeisWatch::told_island(std::uint16_t base, const Observation& seen, std::in
     return;
   }
   std::vector<Asked>& asked = bases_[base].asked;
+  const std::uint16_t own = context_.device(base).island;
+  const bool other = island >= 0 && own != kNoIsland && island != own;
+  if (other && context_.device(base).whole && !bases_[base].called) {
+    context_.report("N9-SET"_rule, Severity::kFail, seen.place, base,
+                    {"The base station of island " + number(own) + " sets island " +
+                         number(static_cast<std::uint64_t>(island)) +
+                         " at its sink, and no call asked for that.",
+                     "Its own island, or none.",
+                     {}});
+  }
   if (asked.empty()) return;
   const std::uint16_t due = asked.front().island;
   asked.erase(asked.begin());

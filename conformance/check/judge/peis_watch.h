@@ -45,8 +45,8 @@ class PeisWatch {
   }
   /// Judges a message that `base` sends down to its sink and that is not its own.
   void went_down(std::uint16_t base, const Observation& seen, const Net& net);
-  /// Notes a call that sets the island, which `base` must tell its sink.
-  void asked_island(std::uint16_t base, const Observation& call, std::uint16_t island);
+  /// Notes a call that sets the island, which `base` must tell its sink if it `owes` that.
+  void asked_island(std::uint16_t base, const Observation& call, std::uint16_t island, bool owes);
   /// Notes that the last call, which set `island`, failed.
   void refused_island(std::uint16_t base, std::uint16_t island);
   /// Judges a config message of `base` that sets `island`; -1 if it sets none.
@@ -77,6 +77,7 @@ class PeisWatch {
     Messages up;               ///< From the sink.
     Messages down;             ///< From PEIS.
     bool moved = false;        ///< Its application set another island.
+    bool called = false;       ///< It was called to set one.
     std::vector<Asked> asked;  ///< Calls that the sink was not told of, oldest first.
   };
 

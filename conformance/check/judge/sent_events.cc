@@ -100,15 +100,20 @@ void Originals::told(std::uint16_t node, const Observation& seen, const machine:
                            (device.role == Role::kBaseStation && !logs_peis(context_.run, node));
     const bool forgotten = ring.size() + 1 >= ring.kMost && awaits(node, ring.oldest(0), now);
     bool before = context_.begun_before(node, now, patience_us(node));
-    for (std::size_t i = 0; !before && i < calls_[node].size(); ++i) {  // It may have left unseen.
-      const Call& call = calls_[node].newest(i);
-      before = call.result == ack.seq_num && context_.before_captures(node, call.place.time_us);
-    }
     const bool came = heard_ack(node, ack.seq_num, [](const Net&) { return true; });
+    bool line = false;
+    for (std::size_t i = 0; i < calls_[node].size(); ++i) {  // It may have left unseen.
+      const Call& call = calls_[node].newest(i);
+      if (call.result != ack.seq_num || !call.send->reliable) continue;
+      // What is acked did leave.
+      before = before || came || context_.before_captures(node, call.place.time_us);
+      line = line || call.line != Link::kRadio;
+    }
+    const Severity severity = context_.without(node, std::min(device.first_us, now), now, node);
     context_.report(came || !ack.success ? "T3-MATCH"_rule : "T3-SUCCESS"_rule,
-                    elsewhere || forgotten || before
-                        ? Severity::kInconclusive
-                        : context_.without(node, device.first_us, now, node),
+                    elsewhere || forgotten || before ? Severity::kInconclusive
+                    : line                           ? context_.on_line(node, severity)
+                                                     : severity,
                     seen.place, node,
                     {what + " although the node has sent no reliable message with that number.",
                      "The number of the message that was acked.",
@@ -161,11 +166,11 @@ void Originals::told(std::uint16_t node, const Observation& seen, const machine:
   } else if (ack.success && !acked) {
     const Device& device = context_.device(node);  // A mote hears by radio alone.
     const bool all = device.hearing && device.role == Role::kMote;
+    const Severity severity = context_.without(kNobody, match->place.time_us, now, node);
     context_.report(strays_us_[node] >= match->place.time_us ? "T3-MATCH"_rule : "T3-SUCCESS"_rule,
-                    all ? Severity::kFail
-                    : context_.has_lines(node)
-                        ? context_.without(kNobody, match->place.time_us, now, node)
-                        : Severity::kInconclusive,
+                    all                        ? Severity::kFail
+                    : context_.has_lines(node) ? context_.on_line(node, severity)
+                                               : Severity::kInconclusive,
                     seen.place, node,
                     {what + ", but no ack of it was heard.", "No receive_ack before the ack.", {}});
   } else if (!ack.success && seen.place.timed() && match->place.timed() &&

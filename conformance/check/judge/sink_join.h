@@ -99,6 +99,8 @@ struct PairWatch {
   bool request_listed = false;  ///< The last request surely came while it was listed.
   bool cut_off = false;         ///< It was listed when the sink's island became another.
 
+  /// Returns whether what was told of the mote ahead of its ack_join may be what that is due.
+  bool is_ahead(std::int64_t skew_us) const { return admitted.time_us - ahead_us <= skew_us; }
   /// Takes the sink to list the mote, or not, and to owe nothing.
   void know_nothing() {
     set.assign(1, SinkHypothesis{});

@@ -315,8 +315,7 @@ bool SynapticWatch::flooded(std::uint16_t device, const Unknown& one) const {
   const std::int64_t came_us = one.place.time_us;
   if (context_.crowded(device, came_us)) return true;
   const std::vector<Observation>& seen = context_.run.seen;
-  const bool serial = one.link == machine::Link::kSerial;
-  const std::size_t room = serial ? machine::kSerialRoom : machine::kRadioRoom;
+  const std::size_t room = context_.room(device, one.link);
   return std::ranges::any_of(context_.busy_times(device), [&](const BusyTime& busy) {
     if (busy.from_us > came_us || came_us > busy.to_us + context_.response_us(device)) return false;
     std::size_t others = 0;

@@ -150,6 +150,7 @@ void SynapticWatch::note(Node& node, const machine::Synaptic& before, std::int64
       out->begun_us = out->waits_us = now_us;
       out->ticks = {};
       out->silent_us = out->sent_us = -1;
+      out->owes = false;
       out->written_us = now_us;  // The first tick sends in either mode.
     }
     if (!channel.started && (ran || old == nullptr)) {
@@ -312,7 +313,8 @@ void SynapticWatch::sent(std::uint16_t device, const Observation& seen, const Ne
   const bool saves = channel->mode == machine::Mode::kPowerSave;
   // A write just before the last data may have missed its tick, unless they have it.
   const std::int64_t missed_us = out->newest ? 0 : context_.response_us(device);
-  const bool changed = out->written_us >= out->sent_us - missed_us;
+  const bool changed =
+      std::exchange(out->owes, false) || out->written_us >= out->sent_us - missed_us;
   if (saves && steady && !twin && !changed) {
     context_.report("S3-UNCHANGED"_rule, Severity::kFail, seen.place, device,
                     {"A power-save channel sends although nothing was written for " +
@@ -494,7 +496,9 @@ bool SynapticWatch::crowded(std::uint16_t device, std::int64_t from_us, std::int
                       net.sound && net.trans_id == component::kSynChannel;
     if (context_.who.marks[i].device == device && !data) ++others;
   }
-  return others > kTickCrowd || nodes_[device].outs.size() > kBufferMax;
+  const std::size_t room = context_.room(device, machine::Link::kRadio);
+  return others > std::min(kTickCrowd, room - 1) ||
+         nodes_[device].outs.size() > std::min(kBufferMax, room);
 }
 
 void SynapticWatch::settle_outputs(std::uint16_t device, std::int64_t now_us) {
@@ -536,6 +540,7 @@ void SynapticWatch::settle_outputs(std::uint16_t device, std::int64_t now_us) {
     out.ticks = {};
     if (saves) out.sent_us = now_us;  // Said once.
     out.newest = false;
+    out.owes = saves;
   }
 }
 

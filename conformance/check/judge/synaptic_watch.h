@@ -66,6 +66,7 @@ class SynapticWatch {
     std::uint32_t written = 0;     ///< Bit i: connection i was written.
     std::array<std::uint32_t, machine::kConnectionsMax> sent_bits{};  ///< The last data.
     bool newest = false;          ///< They surely had every write before them.
+    bool owes = false;            ///< Later ones were due, and are said to be missing.
     std::int64_t silent_us = -1;  ///< When it was stopped or disposed; -1: it runs.
     bool disposed = false;
     struct Old {

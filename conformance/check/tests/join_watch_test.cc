@@ -183,5 +183,67 @@ TEST(JoinWatch, ACallLastsAsLongAsItsRequestsThatEscaped) {
   EXPECT_NE(fails(5500, false).find("F:J8-FAIL"), std::string::npos) << fails(5500, false);
 }
 
+// Five requests that nobody answers, 488 ms apart.
+Script five_requests(double ms) {
+  Script script;
+  script.join(0, 11, 3, 100);
+  for (int i = 0; i < 5; ++i) script.request(ms + 488 * i, 2, 500);
+  return script.net(9000, 3, 1, message({11, 3}, {11, 1}, 7));
+}
+
+TEST(JoinWatch, ALogThatEndsBeforeACallOwesNoEvent) {
+  const std::string call = m2(4000, "< app join(type=1 transducers=0x43 actuators=1)");
+  const auto until = [&](int ms) {
+    return found_beside(five_requests(4010), call + m2(ms, "< app get_interface(radio)"), true);
+  };
+  EXPECT_EQ(until(6000).find("F:"), std::string::npos) << until(6000);
+  EXPECT_NE(until(8000).find("F:J8-FAIL"), std::string::npos) << until(8000);
+}
+
+// Nothing had happened before the run, but a call before its log begins.
+TEST(JoinWatch, ALogThatBeginsLateHasNoCallFromBefore) {
+  const auto from = [](int ms) {
+    return found_beside(five_requests(4010),
+                        m2(ms, "< app get_interface(radio)") + m2(6500, "> app joined(0:0 fail)") +
+                            m2(8000, "< app join(type=1 transducers=0x43 actuators=1)"),
+                        true);
+  };
+  EXPECT_EQ(from(5000).find("F:J5-ONCE"), std::string::npos) << from(5000);
+  EXPECT_NE(from(0).find("F:J5-ONCE"), std::string::npos) << from(0);
+}
+
+// The first ack_join escaped; the application is told of it before the repeat that was captured.
+TEST(JoinWatch, AnEventBeforeARepeatedAckJoinIsItsEvent) {
+  const auto told = [](int ms) {
+    Script script;
+    script.request(10, 2, 100).reply(20, 11, 2, 100, 20);
+    ++script.dsn[2];
+    script.ack_join(40, 11, 2, 100).link_ack().joined(60, 11, 2);
+    script.join(1000, 11, 3, 200).net(2000, 2, 1, message({11, 2}, {11, 1}, 7));
+    const std::string event = "> app mote_joined(11:2 type=1 transducers=0x43 actuators=1)";
+    return found_beside(
+        script,
+        (ms < 0 ? "" : at(ms, "sA " + event)) +
+            at(1030, "sA > app mote_joined(11:3 type=1 transducers=0x43 actuators=1)") +
+            at(2000, "sA < app get_interface(radio)"),
+        false, "sA sink id=1 island=11");
+  };
+  EXPECT_EQ(told(30).find("F:"), std::string::npos) << told(30);
+  EXPECT_EQ(told(45).find("F:"), std::string::npos) << told(45);
+  EXPECT_NE(told(-1).find("F:J6-ADD"), std::string::npos) << told(-1);
+}
+
+TEST(JoinWatch, BeforeTheFirstFrameOfARunOneMayHaveEscaped) {
+  Script script;
+  script.ack_join(0, 11, 2, 100).link_ack().joined(20, 11, 2);
+  script.net(1000, 2, 1, message({11, 2}, {11, 1}, 7));
+  const auto rules = [&](bool complete) {
+    const Options options{.sniffer_complete = complete, .start_cold = true};
+    return rules_of(judge(script.run, options).findings, Severity::kFail);
+  };
+  EXPECT_EQ(rules(false), "");
+  EXPECT_NE(rules(true).find("J4-JOINED"), std::string::npos) << rules(true);
+}
+
 }  // namespace
 }  // namespace rubric::check::join_watch_test

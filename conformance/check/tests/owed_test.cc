@@ -5,6 +5,7 @@
 #include <string>
 
 #include "conformance/check/tests/must_read.h"
+#include "conformance/check/tests/testing.h"
 #include "conformance/check/tests/testing_log.h"
 
 namespace rubric::check {
@@ -245,6 +246,137 @@ TEST(Owed, WhatOnlyLooksLikeAnAnnouncement) {
                             at(1000, "sA > app send_result(100)") + sent;
   EXPECT_EQ(found(asked, Severity::kFail).find("J6-CONTENT"), std::string::npos);
   EXPECT_NE(found(kIsland + sent, Severity::kFail).find("J6-CONTENT"), std::string::npos);
+}
+
+// The log of an application beside captures, in which frames are missing.
+
+constexpr machine::Address kPc{11, machine::kNullDevid};
+
+// The PC of island 11 gets a message that its own sink heard from `island`; it may come by PEIS,
+// too.
+std::string pc_gets(std::uint16_t island, int times) {
+  NetFields net = message({island, 3}, kPc, 9, 1);
+  Script script;
+  script.join(0, 11, 2, 100).join(100, island, 3, 300, island == 11 ? 1 : 2).net(1000, 3, 1, net);
+  net.size = 114;
+  script.up(1010, net).down(2000, message(kPc, {11, 2}, 20)).confirm();
+  script.net(2010, 1, 2, message(kPc, {11, 2}, 20), 11).net(3000, 2, 1, update(2, 7));
+  std::string log;
+  const std::string gets = "bA > app received(" + std::to_string(island) + ":3 mockup x0707)";
+  for (int i = 0; i < times; ++i) log += at(1015 + 40 * i, gets);
+  return found_beside(script, log + at(3000, "bA < app get_clock()"), true,
+                      "bA base_station island=11");
+}
+
+TEST(OwedBesideCaptures, WhatGoesByPeisIsNotSeen) {
+  EXPECT_EQ(pc_gets(12, 1).find("F:"), std::string::npos) << pc_gets(12, 1);
+  EXPECT_EQ(pc_gets(12, 2).find("F:"), std::string::npos) << pc_gets(12, 2);
+  EXPECT_NE(pc_gets(11, 1).find("F:T2-ACK"), std::string::npos) << pc_gets(11, 1);
+  EXPECT_NE(pc_gets(11, 2).find("F:N2-IN-ORDER"), std::string::npos) << pc_gets(11, 2);
+}
+
+// What mote 2 sends at 5000 ms, and its application is told of, was not captured.
+std::string acked(bool ack, bool before) {
+  Script script;
+  if (before) script.join(0, 11, 2, 100);
+  script.join(200, 11, 3, 200);
+  if (ack) script.net(5050, 1, 2, update(2, 9).ack(30), 11);
+  if (before) script.net(5500, 2, 1, update(2, 12));
+  script.net(6000, 2, 1, update(2, 13));
+  return found_beside(script,
+                      m2(10, "< app get_interface(radio)") +
+                          m2(5000, "< app send(dest=11:null app_id=mockup reliable=1 data=x0707)") +
+                          m2(5000, "> app send_result(9)") +
+                          m2(5060, "> app ack_received(mockup 9 success)") +
+                          m2(6500, "< app get_interface(radio)"));
+}
+
+TEST(OwedBesideCaptures, AMessageThatEscapedMayBeAcked) {
+  EXPECT_EQ(acked(true, false).find("F:"), std::string::npos) << acked(true, false);
+  EXPECT_EQ(acked(true, true).find("F:"), std::string::npos) << acked(true, true);
+  EXPECT_EQ(acked(false, false).find("F:"), std::string::npos) << acked(false, false);
+  EXPECT_NE(acked(false, true).find("F:T3-SUCCESS"), std::string::npos) << acked(false, true);
+}
+
+// The sink sends message 9 up its line.
+std::string sink_acked(bool captured, bool ack) {
+  const NetFields net = message({11, 1}, kPc, 9, 1);
+  Script script;
+  script.join(0, 11, 2, 100).net(900, 1, 2, message({11, 1}, {11, 2}, 8), 11);
+  if (captured) script.up(5010, net.forwarded());
+  if (ack) script.down(5050, net.ack(30)).confirm();
+  script.net(6000, 1, 2, message({11, 1}, {11, 2}, 10), 11);
+  const std::string call = "sA < app send(dest=11:null app_id=mockup reliable=1 data=x0707)";
+  const std::string joined = "sA > app mote_joined(11:2 type=1 transducers=0x43 actuators=1)";
+  return found_beside(script,
+                      at(30, joined) + at(5000, call) + at(5000, "sA > app send_result(9)") +
+                          at(5060, "sA > app ack_received(mockup 9 success)") +
+                          at(6500, "sA < app get_interface(radio)"),
+                      false, "sA sink id=1 island=11");
+}
+
+TEST(OwedBesideCaptures, WhatIsAckedWasSent) {
+  EXPECT_EQ(sink_acked(true, true).find(":T3"), std::string::npos) << sink_acked(true, true);
+  EXPECT_EQ(sink_acked(false, true).find("F:"), std::string::npos) << sink_acked(false, true);
+  EXPECT_NE(sink_acked(false, false).find("F:T3-SUCCESS"), std::string::npos)
+      << sink_acked(false, false);
+}
+
+// Mote 2 acks three messages, of which its application gets those that `gets` says.
+std::string gets_of_acked(const std::string& gets) {
+  Script script;
+  script.join(0, 11, 2, 100);
+  std::string log = m2(30, "> app joined(11:2 success)");
+  for (std::uint16_t i = 0; i < 3; ++i) {
+    const double ms = 1000 + 1000 * i;
+    const NetFields net = message(kPc, {11, 2}, i, 1);
+    script.net(ms, 1, 2, net, 11).net(ms + 20, 2, 1, net.ack(static_cast<std::uint16_t>(30 + i)));
+    if (gets[i] != '-') {
+      log +=
+          m2(static_cast<int>(ms) + 10, std::string("> app received(11:null ") +
+                                            (gets[i] == 'm' ? "mockup" : "learning") + " x0707)");
+    }
+  }
+  return found_beside(script, log + m2(6000, "< app get_clock()"));
+}
+
+TEST(OwedBesideCaptures, WhatIsAckedIsDelivered) {
+  EXPECT_EQ(gets_of_acked("mmm").find(":T"), std::string::npos) << gets_of_acked("mmm");
+  EXPECT_NE(gets_of_acked("m-m").find("F:T2-DELIVER"), std::string::npos) << gets_of_acked("m-m");
+  // The log of another application.
+  EXPECT_EQ(gets_of_acked("---").find("F:"), std::string::npos) << gets_of_acked("---");
+}
+
+// The captures end at 3000 ms, and the log goes on; what send accepted then never leaves.
+TEST(OwedBesideCaptures, AMessageThatNeverLeaves) {
+  const auto unsent = [](int ms) {
+    Script script;
+    script.join(0, 11, 2, 100).net(3000, 2, 1, update(2, 12));
+    return found_beside(script,
+                        m2(ms, "< app send(dest=11:null app_id=mockup reliable=0 data=x0708)") +
+                            m2(ms, "> app send_result(9)") + m2(5000, "< app get_clock()"),
+                        true);
+  };
+  EXPECT_NE(unsent(1000).find("F:N2-ONCE"), std::string::npos) << unsent(1000);
+  EXPECT_EQ(unsent(2900).find("F:N2-ONCE"), std::string::npos) << unsent(2900);
+}
+
+// Mote 2 gets a second message that says the same, which was not captured.
+std::string gets_at(int ms) {
+  Script script;
+  script.join(0, 11, 2, 100).net(1000, 1, 2, message(kPc, {11, 2}, 9, 1), 11);
+  if (ms > 1300) ++script.dsn[11 * 65536U + 1];
+  script.net(2600, 1, 2, message({11, 1}, {11, 2}, 10), 11);
+  script.net(3000, 2, 1, message({11, 2}, {11, 1}, 7));
+  return found_beside(script, m2(30, "> app joined(11:2 success)") +
+                                  m2(ms, "> app received(11:null mockup x0707)") +
+                                  m2(2610, "> app received(11:1 mockup x0707)") +
+                                  m2(3000, "< app get_interface(radio)"));
+}
+
+TEST(OwedBesideCaptures, ADeliveryMuchLaterMayBeAnother) {
+  EXPECT_EQ(gets_at(2500).find("F:"), std::string::npos) << gets_at(2500);
+  EXPECT_NE(gets_at(1010).find("F:T2-ACK"), std::string::npos) << gets_at(1010);
 }
 
 }  // namespace

@@ -143,5 +143,39 @@ TEST(PeisWatch, AcksOfBaseStationsAreKnown) {
   EXPECT_EQ(found_by_end(told), "T3-SUCCESS");
 }
 
+std::string told(const std::string& island) {
+  return "am=0->1 config(type=set_island_id value=" + island + ")";
+}
+
+TEST(PeisWatch, ABaseStationTellsItsOwnIsland) {
+  std::string begin = kBegin;
+  const std::string node = "%node bA base_station island=11";
+  begin.insert(begin.find(node) + node.size(), " iut whole");
+  const std::string call =
+      at(50, "bA < app set_island_id(12)") + at(51, "bA > app op_result(success)");
+  const auto fails = [&](const std::string& calls, const std::string& island) {
+    const std::string tells = at(100, "bA > serA " + told(island));
+    return found(begin + calls + tells + "   @0..2000 bA !> * *\n", Severity::kFail);
+  };
+  EXPECT_EQ(fails("", "11"), "");
+  EXPECT_EQ(fails("", "12"), "N9-SET");
+  EXPECT_EQ(fails(call, "12"), "");
+}
+
+// A log has both ends of the line: what the base station sends, and what the sink is given.
+TEST(PeisWatch, ASinkThatWasToldAnotherIslandActsForIt) {
+  const auto answers = [](const std::string& island) {
+    return fails(at(90, "bA < app set_island_id(12)") + at(91, "bA > app op_result(success)") +
+                 at(100, "bA > serA " + told("12")) + at(110, "sA < serA " + told("12")) +
+                 at(1000,
+                    "sA < rA am=5->1 join_request(seq_num=7 mote_type=1 transducers=1 "
+                    "actuators=1)") +
+                 at(1010, "sA > rA am=1->5 join_reply(island_addr=" + island +
+                              " mote_addr=5 cur_time=1010 seq_num=7)"));
+  };
+  EXPECT_EQ(answers("12"), "");
+  EXPECT_EQ(answers("11"), "N9-SET");
+}
+
 }  // namespace
 }  // namespace rubric::check::peis_watch_test

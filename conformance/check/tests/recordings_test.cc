@@ -309,6 +309,29 @@ TEST(AlignLogs, ALogWhoseClockStepsForth) {
   EXPECT_EQ(broken_in(judged({run.capture, retimed(again, step)})), "J5-ONCE");
 }
 
+// Where the log is put too early, each delivery comes before its frame, in one long episode.
+TEST(AlignLogs, ADeliveryOfSomethingElseIsFoundAmongManyDeliveries) {
+  const Recorded run = recorded("timeline");
+  int deliveries = 0;
+  const auto again = [&](int tick, const std::string& line) {
+    const bool its = line.find("bA") != line.npos && line.find("received(") != line.npos;
+    return its && ++deliveries == 6 ? tick : -1;
+  };
+  const std::string line = retimed(run.log, again);
+  const std::string one = line.substr(line.find("@"));
+  for (const bool twice : {false, true}) {
+    std::string log = run.log;
+    const std::size_t at = log.find(one);
+    ASSERT_NE(at, log.npos);
+    if (twice) {
+      log.insert(at, one);
+    } else {
+      log.replace(log.find("data=x", at), 8, "data=xff");
+    }
+    EXPECT_EQ(broken_in(judged({run.capture, log})), twice ? "N2-IN-ORDER" : "T1-DELIVER");
+  }
+}
+
 TEST(AlignLogs, AJoinThatFailsAtOnceIsFound) {
   const Recorded run = recorded("timeline");
   const std::regex joined("(m2 +> +app +joined\\().*(\\))");

@@ -196,5 +196,34 @@ TEST(SynapticTicks, DataWaitWhileTheLinkRepeatsOthers) {
   EXPECT_NE(repeated(0).find("F:S2-TICK"), std::string::npos) << repeated(0);
 }
 
+// The data of the first tick escaped, so that nothing was seen to leave since the last write.
+TEST(SynapticTicks, DataThatEscapedWereStillOwed) {
+  const auto saves = [](bool escapes) {
+    Script script;
+    script.join(0, 11, 2, 100);
+    const auto data = [&](double ms, std::uint16_t number) {
+      NetFields net = message({11, 2}, {11, 1}, number);
+      net.body = {0, 0, 0x80, 0x3F};
+      net.trans_id = component::kSynChannel;
+      net.app_id = static_cast<std::uint8_t>(rubicon::Component::kEsnData);
+      script.net(ms, 2, 1, net);
+    };
+    if (escapes) {
+      ++script.dsn[2];
+    } else {
+      data(680, 1);
+    }
+    data(1168, 2);
+    if (escapes) data(1656, 3);
+    return found_beside(script, m2(100, "< app create_out(dest=11:1 size=1 mode=power_save)") +
+                                    m2(160, "< app write_output(2->1 pos=0 value=1)") +
+                                    m2(160, "< app start(channel=2->1)") +
+                                    m2(1900, "< app get_interface(radio)"));
+  };
+  EXPECT_NE(saves(false).find("F:S3-UNCHANGED"), std::string::npos) << saves(false);
+  const std::string found = saves(true);  // Only the third is too many.
+  EXPECT_EQ(found.find("F:S3-UNCHANGED"), found.rfind("F:S3-UNCHANGED")) << found;
+}
+
 }  // namespace
 }  // namespace rubric::check::synaptic_ticks_test

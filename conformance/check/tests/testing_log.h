@@ -32,10 +32,11 @@ inline std::string at(int ms, const std::string& rest) {
 }
 inline std::string m2(int ms, const std::string& rest) { return at(ms, "m2 " + rest); }
 
-/// Returns the same as found_in() of what the script captures beside lines of mote 2's application.
-inline std::string found_beside(Script script, const std::string& lines, bool complete = false) {
+/// Returns the same as found_in() of what the script captures beside lines of a node's application.
+inline std::string found_beside(Script script, const std::string& lines, bool complete = false,
+                                const std::string& node = "m2 mote id=2") {
   const Run log = must_read(
-      "log", "%rtr 1  %profile paper  %tick ms\n%node m2 mote id=2\n\ncase log\n" + lines);
+      "log", "%rtr 1  %profile paper  %tick ms\n%node " + node + "\n\ncase log\n" + lines);
   Run& run = script.run;
   for (Observation seen : log.seen) {
     seen.place.file = 1;
