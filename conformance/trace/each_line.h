@@ -8,12 +8,12 @@
 
 namespace rubric::trace {
 
+/// Takes a line of the last case of the file as it is so far: with all the headers that apply.
+using TakeLine = std::function<void(const File& so_far, const Line& line)>;
 /// Reads and checks a whole file as parse() does, and keeps of it only its cases' names and
-/// headers, without their notes. A header that comes too late, behind lines of its case, says
-/// nothing of those.
-Parsed parse_headers(std::string_view text, std::string_view file_name);
-/// Gives `take` each line of the cases of a sound file, in their order.
-void each_line(std::string_view text, const std::function<void(const Line&)>& take);
+/// headers, without their notes. Gives `take` each line in their order, up to the first mistake. A
+/// header that comes too late, behind lines of its case, says nothing of those.
+Parsed each_line(std::string_view text, std::string_view file_name, const TakeLine& take);
 
 /// Is told of the cases of a file while they are read.
 class Listener {

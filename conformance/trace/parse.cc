@@ -299,16 +299,22 @@ class Parser {
   std::string_view rest_;  // After the line that is read.
 };
 
-/// Gives each line to a function.
-class LineTaker : public Listener {
+/// Has each line checked before it is taken.
+class CheckedLines : public Listener {
  public:
-  explicit LineTaker(const std::function<void(const Line&)>& take) : take_(take) {}
-  void begin(const Case&) override {}
-  void header(const Header&) override {}
-  void line(const Line& one) override { take_(one); }
+  CheckedLines(const Parsed& parsed, Listener& checker, const TakeLine& take)
+      : parsed_(parsed), checker_(checker), take_(take) {}
+  void begin(const Case& one) override { checker_.begin(one); }
+  void header(const Header& one) override { checker_.header(one); }
+  void line(const Line& one) override {
+    checker_.line(one);
+    if (parsed_.ok()) take_(parsed_.file, one);
+  }
 
  private:
-  const std::function<void(const Line&)>& take_;
+  const Parsed& parsed_;
+  Listener& checker_;
+  const TakeLine& take_;
 };
 
 void sort_diagnostics(Parsed& parsed) {
@@ -347,18 +353,15 @@ Parsed parse(std::string_view text, std::string_view file_name) {
   return parsed;
 }
 
-Parsed parse_headers(std::string_view text, std::string_view file_name) {
+Parsed each_line(std::string_view text, std::string_view file_name, const TakeLine& take) {
   Parsed parsed;
   parsed.file_name = file_name;
-  check_as_read(parsed, [&](Listener& checker) { Parser(parsed, &checker).run(text); });
+  check_as_read(parsed, [&](Listener& checker) {
+    CheckedLines lines(parsed, checker, take);
+    Parser(parsed, &lines).run(text);
+  });
   sort_diagnostics(parsed);
   return parsed;
-}
-
-void each_line(std::string_view text, const std::function<void(const Line&)>& take) {
-  Parsed parsed;
-  LineTaker taker(take);
-  Parser(parsed, &taker).run(text);
 }
 
 std::string parse_message(std::string_view text, Message& out) {

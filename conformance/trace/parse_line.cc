@@ -201,6 +201,7 @@ void parse_fields(Scanner& in, Message& message) {
     message.form = Message::Form::kAny;
     message.fields.clear();
   }
+  message.fields.shrink_to_fit();  // A case keeps all its lines.
 }
 
 void parse_requirements(Scanner& in, Line& line) {

@@ -276,23 +276,21 @@ struct Comment {
   friend bool operator==(const Comment&, const Comment&) = default;
 };
 
-/// A value that is held apart, and copied with what holds it.
+/// A value that its copies share: a case is copied for each run of it, with other headers.
 template <class T>
-class Boxed {
+class Shared {
  public:
-  explicit Boxed(T value) : value_(std::make_unique<T>(std::move(value))) {}
-  Boxed(const Boxed& other) : value_(std::make_unique<T>(*other.value_)) {}
-  Boxed(Boxed&&) noexcept = default;
-  Boxed& operator=(Boxed other) noexcept {
-    value_.swap(other.value_);
-    return *this;
+  explicit Shared(T value) : value_(std::make_shared<T>(std::move(value))) {}
+  const T& get() const { return *value_; }
+  /// Returns one that no copy shares.
+  T& own() {
+    if (value_.use_count() > 1) value_ = std::make_shared<T>(*value_);
+    return *value_;
   }
-  ~Boxed() = default;
-  T& operator*() const { return *value_; }
-  friend bool operator==(const Boxed& a, const Boxed& b) { return *a == *b; }
+  friend bool operator==(const Shared& a, const Shared& b) { return *a.value_ == *b.value_; }
 
  private:
-  std::unique_ptr<T> value_;
+  std::shared_ptr<T> value_;
 };
 
 /// A line of a file, or several blank ones. Most kinds are far larger than a blank or a comment, of
@@ -301,27 +299,33 @@ class Item {
  public:
   Item(Blank what) : what_(what) {}
   Item(Comment what) : what_(std::move(what)) {}
-  Item(Header what) : what_(Boxed(std::move(what))) {}
-  Item(Line what) : what_(Boxed(std::move(what))) {}
+  Item(Header what) : what_(Shared(std::move(what))) {}
+  Item(Line what) : what_(Shared(std::move(what))) {}
   friend bool operator==(const Item&, const Item&) = default;
 
   /// Returns it as the kind T; null if it is another.
   template <class T>
   const T* as() const {
     if constexpr (std::is_same_v<T, Header> || std::is_same_v<T, Line>) {
-      const auto* const boxed = std::get_if<Boxed<T>>(&what_);
-      return boxed == nullptr ? nullptr : &**boxed;
+      const auto* const shared = std::get_if<Shared<T>>(&what_);
+      return shared == nullptr ? nullptr : &shared->get();
     } else {
       return std::get_if<T>(&what_);
     }
   }
+  /// The same, to be changed.
   template <class T>
   T* as() {
-    return const_cast<T*>(std::as_const(*this).template as<T>());
+    if constexpr (std::is_same_v<T, Header> || std::is_same_v<T, Line>) {
+      auto* const shared = std::get_if<Shared<T>>(&what_);
+      return shared == nullptr ? nullptr : &shared->own();
+    } else {
+      return std::get_if<T>(&what_);
+    }
   }
 
  private:
-  std::variant<Blank, Comment, Boxed<Header>, Boxed<Line>> what_;
+  std::variant<Blank, Comment, Shared<Header>, Shared<Line>> what_;
 };
 
 struct Case {

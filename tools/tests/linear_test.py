@@ -102,9 +102,6 @@ COUNTED = {
     "links": lambda i: f"%link r{i} radio sA\n",
     "cases with a line": lambda i: f"case a{i}\n0 sA > * *\n",
 }
-# Known: a chart draws frames as if all could cross, and a case looks for what is expected at one
-# time among all that is.
-QUADRATIC = {("frames", "chart"), ("what is at a time", "test")}
 LINES_LEAST = 2000  # Of them; then tenfold.
 LINES_CPU_MOST = 3 * STEP
 LINES_CPU_FLOOR_S = 0.02
@@ -171,8 +168,6 @@ class Linear(Folder):
         path = self.folder / "x.rtr"
         inputs = [shape(LINES_LEAST * STEP ** power).encode() for power in range(2)]
         for command in commands:
-            if (name, command[0]) in QUADRATIC:
-                continue
             memory = self.grows(name, command, inputs, path, (0, 1, 2, 3, 64, 66), LINES_CPU_MOST,
                                 LINES_CPU_FLOOR_S)
             if command == ("check",) and name not in ("nodes", "links"):  # Headers are kept.

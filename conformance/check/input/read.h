@@ -22,7 +22,8 @@ class RunReader {
   RunReader& operator=(const RunReader&) = delete;
 
   /// Adds a file's bytes, .rtr text included; the format is found from its content, and reports use
-  /// `name`. Returns false, with `error` naming file and reason, if they cannot be read at all.
+  /// `name`. Returns false, with `error` naming file and reason, if they cannot be read at all; no
+  /// run comes of that.
   /// 'rubric check' adds captures packet by packet, as every command reads them.
   bool add_file(const std::string& path, std::string& error);
   bool add_bytes(const std::string& name, std::string_view bytes, std::string& error);

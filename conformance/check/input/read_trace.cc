@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <set>
 #include <unordered_map>
 
@@ -29,10 +30,8 @@ machine::Role role_of(trace::Role role) {
 
 class LogReader {
  public:
-  LogReader(const trace::File& file, const trace::Case& one, Run& run)
-      : run_(run), scope_(trace::scope_of(file, one)) {}
-
-  void read(std::string_view text) {
+  LogReader(const trace::File& file, Run& run)
+      : run_(run), scope_(trace::scope_of(file, file.cases.front())) {
     const bool marked = std::ranges::any_of(scope_.nodes, &trace::NodeHeader::iut);
     trace::Statement stated;  // By those under test.
     for (const trace::NodeHeader& header : scope_.nodes) {
@@ -56,10 +55,14 @@ class LogReader {
     run_.marked = run_.marked || marked;
     whole_ = std::ranges::any_of(scope_.nodes, &trace::NodeHeader::whole);
     for (std::size_t i = 0; i < run_.nodes.size(); ++i) index(i);
-    trace::each_line(text, [&](const Line& line) {
-      note(line);
-      take(line);
-    });
+  }
+
+  void read(const Line& line) {
+    note(line);
+    take(line);
+  }
+
+  void finish() {
     bool applications = false;
     for (std::size_t i = first_; i < run_.nodes.size(); ++i) {
       LoggedNode& node = run_.nodes[i];
@@ -305,34 +308,42 @@ bool looks_like_trace(std::string_view bytes) {
 }
 
 bool read_trace(const std::string& name, std::string_view text, Run& run, std::string& error) {
-  trace::Parsed parsed = trace::parse_headers(text, name);
-  const std::size_t last_line = text.rfind('\n') + 1;
   // Its writer may have been stopped within a line.
-  if (!parsed.ok() && last_line != text.size()) {
-    trace::Parsed whole_lines = trace::parse_headers(text.substr(0, last_line), name);
-    const bool cut = whole_lines.ok() && !whole_lines.file.cases.empty();
+  const std::string_view whole_lines = text.substr(0, text.rfind('\n') + 1);
+  const auto check = [&](std::string_view part) {
+    return trace::each_line(part, name, [](const trace::File&, const Line&) {});
+  };
+  if (whole_lines.size() != text.size() && !check(text).ok()) {
+    const trace::Parsed parsed = check(whole_lines);
+    const bool cut = parsed.ok() && !parsed.file.cases.empty();
     run.cut = run.cut || cut;
-    if (cut) {
-      parsed = std::move(whole_lines);
-      text = text.substr(0, last_line);
-    }
+    if (cut) text = whole_lines;
   }
+  std::optional<LogReader> reader;
+  std::string broken;
+  const auto read = [&](const trace::File& file, const Line& line) {
+    if (file.cases.size() != 1 || !broken.empty()) return;
+    try {
+      if (!reader) reader.emplace(file, run);
+      reader->read(line);
+    } catch (const trace::TraceError& wrong) {
+      broken = name + ":" + std::to_string(wrong.place().line) + ": " + wrong.what();
+    }
+  };
+  const trace::Parsed parsed = trace::each_line(text, name, read);
   if (!parsed.ok()) {
     error = parsed.errors();
-    return false;
-  }
-  if (parsed.file.cases.size() != 1) {
+  } else if (parsed.file.cases.size() != 1) {
     error = name + ": has " + std::to_string(parsed.file.cases.size()) +
             " cases; a log of a run has one";
-    return false;
+  } else if (!broken.empty()) {
+    error = broken;
+  } else {
+    if (!reader) reader.emplace(parsed.file, run);
+    reader->finish();
+    return true;
   }
-  try {
-    LogReader(parsed.file, parsed.file.cases.front(), run).read(text);
-  } catch (const trace::TraceError& broken) {
-    error = name + ":" + std::to_string(broken.place().line) + ": " + broken.what();
-    return false;
-  }
-  return true;
+  return false;
 }
 
 }  // namespace rubric::check

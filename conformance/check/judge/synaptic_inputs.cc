@@ -60,11 +60,11 @@ void SynapticWatch::refused(std::uint16_t device, const Observation& seen, const
   const bool there = runs && its.whole && node.twins.empty() && node.perhaps.empty();
   if (!outside && !wrong && !there) return;
   if (node.wanted.empty()) {  // It was the last call.
-    node.channels = node.former.channels;
-    node.ins = node.former.ins;
-    node.outs = node.former.outs;
-    node.restart_us = node.former.restart_us;
-    node.shifted = node.former.shifted;
+    node.channels = node.former->channels;
+    node.ins = node.former->ins;
+    node.outs = node.former->outs;
+    node.restart_us = node.former->restart_us;
+    node.shifted = node.former->shifted;
   }
   if (outside && made != nullptr) node.perhaps.push_back(made->id);  // Other calls lay between.
   if (outside) return;

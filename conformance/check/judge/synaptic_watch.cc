@@ -79,8 +79,9 @@ void SynapticWatch::called(std::uint16_t device, const Observation& seen, machin
   config.id = context_.device(device).am;
   config.profile = context_.profile(device);
   settle(device, now_us);
-  node.former = {node.channels, node.ins, node.outs, node.restart_us, node.shifted};
-  const machine::Synaptic& before = node.former.channels;
+  node.former = std::make_unique<Former>(
+      Former{node.channels, node.ins, node.outs, node.restart_us, node.shifted});
+  const machine::Synaptic& before = node.former->channels;
   context_.actions.clear();
   machine::call_synaptic(node.channels, config, own, machine::ticks_of(now_us), *seen.call,
                          context_.actions);

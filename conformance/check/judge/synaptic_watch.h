@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -155,7 +156,7 @@ class SynapticWatch {
     std::vector<In> ins;
     machine::Synaptic channels;
     std::vector<Wanted> wanted;      ///< Of calls that have not returned; in order.
-    Former former;                   ///< What there was before the last call.
+    std::unique_ptr<Former> former;  ///< What there was before the last call, if there was one.
     std::int64_t step_us = -1;       ///< The last set_time_step.
     std::uint32_t former_ticks = 0;  ///< The period before it, which a tick may end first.
     std::vector<Out> outs;

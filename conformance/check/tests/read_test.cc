@@ -230,6 +230,17 @@ TEST(Read, FlagsOfTheCapturingHostAreTurned) {
   EXPECT_EQ(sink_only.ways(), "u");
 }
 
+TEST(Read, MistakesOfALogAreAllSaidBeforeAFrameThatCannotBe) {
+  const std::string log =
+      "%rtr 1\n%node m2 mote id=2\ncase log\n"
+      "@0 m2 > rA am=2->1 join_request(seq_num=* mote_type=1 transducers=1 actuators=1)\n";
+  std::string error;
+  EXPECT_FALSE(RunReader().add_bytes("x", log, error));
+  EXPECT_EQ(error.substr(0, 5), "x:4: ") << error;
+  EXPECT_FALSE(RunReader().add_bytes("x", log + "@0 m2 > rA *\nnonsense\n", error));
+  EXPECT_EQ(error.substr(0, 4), "x:6:") << error;
+}
+
 TEST(Read, ALogThatEndsWithinALineIsTakenUpToThat) {
   constexpr const char* kLog = R"(%rtr 1  %profile paper
 %node m2 mote id=2

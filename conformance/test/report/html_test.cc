@@ -116,6 +116,30 @@ TEST(LogLines, AFrameThatTwoNodesShowIsOne) {
   EXPECT_GT(heard, 30u);
 }
 
+// A line stands for a later one of another node: as it is sent, for 40 ticks, or given at once;
+// once for each node.
+TEST(LogLines, AFrameIsGivenToANodeOnce) {
+  const trace::Parsed parsed = trace::parse_syntax(
+      "%rtr 1\ncase c\n"
+      "@0  m5 > rA am=5->1 join_request(seq_num=1 ...) | 00\n"
+      "@1  sA < rA am=5->1 join_request(seq_num=1 ...) | 00\n"
+      "@1  sB < rA am=5->1 join_request(seq_num=1 ...) | 00\n"
+      "@2  sA < rA am=5->1 join_request(seq_num=1 ...) | 00\n"  // Another one.
+      "@2  sB < rA am=5->1 join_request(seq_num=1 ...) | 00\n"
+      "@2  sB < rA am=5->1 join_request(seq_num=2 ...) | 00\n"
+      "@2  sC < rA am=4->1 join_request(seq_num=1 ...) | 00\n"
+      "@2  sC < rB am=5->1 join_request(seq_num=1 ...) | 00\n"
+      "@40 sC < rA am=5->1 join_request(seq_num=1 ...) | 00\n"
+      "@41 sD < rA am=5->1 join_request(seq_num=1 ...) | 00\n"
+      "@50 sA > serA am=1->9 join_reply(seq_num=1 ...) | 00\n"
+      "@51 b  < serA am=7->8 join_reply(seq_num=1 ...) | 00\n",
+      "x");
+  ASSERT_EQ(parsed.errors(), "");
+  EXPECT_THAT(
+      first_seen(parsed.file.cases[0].lines()),
+      ElementsAre(kNoLine, 0, 0, kNoLine, 3, kNoLine, kNoLine, kNoLine, 0, kNoLine, kNoLine, 10));
+}
+
 TEST(LogLines, PeersAreTheNodesThatAreMeant) {
   const CaseRun& accept = one("j4.accept");  // m5, sA of island 11 and sB of island 12.
   std::map<std::string, std::vector<std::size_t>> peers;

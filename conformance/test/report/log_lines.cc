@@ -1,7 +1,9 @@
 #include "conformance/test/report/log_lines.h"
 
 #include <algorithm>
-#include <utility>
+#include <map>
+#include <string_view>
+#include <unordered_map>
 
 #include "conformance/trace/parse.h"
 #include "conformance/trace/print.h"
@@ -36,25 +38,28 @@ void keep_of_island(const std::vector<NodeHeader>& nodes, const Line& line,
   });
 }
 
-// Compares acks, whichever body they have.
-bool is_same_ack(const trace::Message& before, const trace::Message& message) {
+// Returns the parts of an ack that it has whichever its body is; empty if it is none.
+std::string ack_text(const trace::Message& message) {
   const Value* const kind = message.find("payload.trans_id");
-  if (kind == nullptr || kind->text != "rubicon_ack") return false;
-  constexpr std::string_view kPaths[] = {
-      "dest", "src", "seq_num", "payload.trans_id", "payload.app_id", "payload.body.seq_num"};
-  return std::all_of(std::begin(kPaths), std::end(kPaths), [&](std::string_view path) {
-    const Value* const a = before.find(path);
-    const Value* const b = message.find(path);
-    return a != nullptr && b != nullptr && *a == *b;
-  });
+  if (kind == nullptr || kind->text != "rubicon_ack") return {};
+  std::string out;
+  for (const char* path : {"dest", "src", "seq_num", "payload.app_id", "payload.body.seq_num"}) {
+    const Value* const value = message.find(path);
+    if (value == nullptr) return {};
+    out += trace::value_text(*value) + ' ';
+  }
+  return out;
 }
 
-// Compares frames without the AM addresses of a serial line and the bytes after a message.
-bool is_same(const Line& before, const Line& line, bool acks_in_any_form) {
-  return before.link == line.link && before.node != line.node && before.am &&
-         (line.link.starts_with("ser") || *before.am == *line.am) &&
-         (before.message == line.message ||
-          (acks_in_any_form && is_same_ack(before.message, line.message)));
+// Returns what lines that show the same frame have in common: all but the AM addresses of a serial
+// line and the bytes after a message.
+std::string frame_text(const Line& line, bool acks_in_any_form) {
+  std::string out = line.link + ' ';
+  if (!line.link.starts_with("ser")) {
+    out += trace::value_text(line.am->source) + "->" + trace::value_text(line.am->dest) + ' ';
+  }
+  const std::string ack = acks_in_any_form ? ack_text(line.message) : std::string();
+  return out + (ack.empty() ? trace::print(line.message) : "ack " + ack);
 }
 
 }  // namespace
@@ -116,29 +121,37 @@ std::optional<Line> asked_line(const runner::Failure& failure) {
 }
 
 std::vector<std::size_t> first_seen(const std::vector<const Line*>& lines, bool acks_in_any_form) {
+  // Those that a node may yet be given, the latest last: given the same frame of the same sender
+  // again, it is another frame.
+  struct Open {
+    std::vector<std::size_t> lines;
+    std::size_t known = 0;  // Of the frame's first lines.
+  };
+  struct Frame {
+    std::vector<std::size_t> firsts;
+    std::map<std::string_view, Open> by_node;
+  };
+  std::unordered_map<std::string, Frame> frames;
   std::vector<std::size_t> out(lines.size(), kNoLine);
-  // If a node is given the same frame of the same sender again, that is another frame.
-  std::vector<std::pair<std::size_t, const std::string*>> given;
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const Line& line = *lines[i];
-    if (line.op != Op::kGiven || !line.am || !line.bytes) continue;
-    for (std::size_t k = i; k-- > 0;) {
-      const Line& before = *lines[k];
-      const std::int64_t ago = line.time.from - before.time.from;
-      if (ago > kOnItsWayTicks) break;
-      if (out[k] != kNoLine || (before.op == Op::kGiven && ago > 0) ||
-          !is_same(before, line, acks_in_any_form)) {
-        continue;
+    if (!line.am) continue;
+    Frame& frame = frames[frame_text(line, acks_in_any_form)];
+    if (line.op == Op::kGiven && line.bytes) {
+      Open& open = frame.by_node[line.node];
+      for (; open.known < frame.firsts.size(); ++open.known) {
+        const std::size_t first = frame.firsts[open.known];
+        if (lines[first]->node != line.node) open.lines.push_back(first);
       }
-      if (std::any_of(given.begin(), given.end(), [&](const auto& one) {
-            return one.first == k && *one.second == line.node;
-          })) {
-        continue;
+      while (out[i] == kNoLine && !open.lines.empty()) {
+        const Line& before = *lines[open.lines.back()];
+        const std::int64_t ago = line.time.from - before.time.from;
+        if (ago > kOnItsWayTicks) break;
+        if (before.op != Op::kGiven || ago == 0) out[i] = open.lines.back();
+        open.lines.pop_back();  // What was given earlier is not given again.
       }
-      out[i] = k;
-      given.emplace_back(k, &line.node);
-      break;
     }
+    if (out[i] == kNoLine) frame.firsts.push_back(i);
   }
   return out;
 }

@@ -109,6 +109,7 @@ void NodeLog::read_outputs() {
   const std::vector<Output>& outputs = target_->outputs();
   for (std::size_t i = seen_.size(); i < outputs.size(); ++i) {
     const Output& output = outputs[i];
+    in_order_ = in_order_ && (i == 0 || outputs[i - 1].time <= output.time);
     seen_.push_back({message_of(output), link_name(output), is_foreign(output)});
     const Seen& seen = seen_.back();
     trace::Line line =
@@ -162,15 +163,28 @@ Window NodeLog::given(Ticks now) {
   LoggedLine& logged = log_.back();
   const Window given = target_->given().value_or(Window{now, now});
   logged.time = given.from;
-  logged.line.time = trace::Time::at(given.from);
+  logged.line.as<trace::Line>()->time = trace::Time::at(given.from);
   read_outputs();
   return given;
+}
+
+std::pair<std::size_t, std::size_t> NodeLog::in_window(const Window& window) const {
+  if (!in_order_) return {0, seen_.size()};
+  const std::vector<Output>& outputs = target_->outputs();
+  const auto count = static_cast<std::ptrdiff_t>(seen_.size());
+  const auto last = outputs.begin() + count;
+  const auto from = std::lower_bound(outputs.begin(), last, window.from,
+                                     [](const Output& one, Ticks at) { return one.time < at; });
+  const auto to = std::upper_bound(from, last, window.to,
+                                   [](Ticks at, const Output& one) { return at < one.time; });
+  return {from - outputs.begin(), to - outputs.begin()};
 }
 
 const Output* NodeLog::take(const trace::Line& line, const Window& window,
                             trace::Bindings& bindings) {
   const std::vector<Output>& outputs = target_->outputs();
-  for (std::size_t i = 0; i < seen_.size(); ++i) {
+  const auto [begin, end] = in_window(window);
+  for (std::size_t i = begin; i < end; ++i) {
     Seen& seen = seen_[i];
     if (seen.taken || !is_about(line, seen) || !window.holds(outputs[i].time)) continue;
     if (const auto next = next_.find(seen.link); next != next_.end() && i < next->second) continue;
@@ -192,7 +206,8 @@ void NodeLog::allow(const trace::Line& line, const Window& window,
 const Output* NodeLog::forbidden(const trace::Line& line, const Window& window,
                                  const trace::Bindings& bindings) const {
   const std::vector<Output>& outputs = target_->outputs();
-  for (std::size_t i = 0; i < seen_.size(); ++i) {
+  const auto [begin, end] = in_window(window);
+  for (std::size_t i = begin; i < end; ++i) {
     const Seen& seen = seen_[i];
     if (seen.taken || !is_about(line, seen) || !window.holds(outputs[i].time)) continue;
     trace::Bindings copy = bindings;

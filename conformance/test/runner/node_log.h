@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "conformance/test/runner/blame.h"
@@ -16,7 +17,7 @@ namespace rubric::runner {
 
 struct LoggedLine {
   Ticks time = 0;
-  trace::Line line;
+  trace::Item line;
 };
 
 /// How the closest output missed a line: one of the same message in its window, or the very output
@@ -80,6 +81,8 @@ class NodeLog {
   /// protocol where it says `*`.
   static bool is_about(const trace::Line& line, const Seen& seen);
   Window given(Ticks now);
+  /// Returns the first output that may be in the window, and what is behind the last one.
+  std::pair<std::size_t, std::size_t> in_window(const Window& window) const;
   void read_outputs();
   std::string link_name(const Output& output) const;
 
@@ -88,6 +91,7 @@ class NodeLog {
   std::map<machine::Link, std::string> link_names_;
   std::vector<Seen> seen_;                   // One for each output of the target.
   std::map<std::string, std::size_t> next_;  // By link: the output after the last taken one.
+  bool in_order_ = true;                     // Outputs are, in time.
   std::vector<LoggedLine> log_;
 };
 

@@ -530,7 +530,7 @@ class Run {
     std::stable_sort(all.begin(), all.end(),
                      [](const LoggedLine& a, const LoggedLine& b) { return a.time < b.time; });
     result.log = trace::Case(case_.name);
-    for (LoggedLine& one : all) result.log.add(std::move(one.line));
+    for (LoggedLine& one : all) result.log.items.push_back(std::move(one.line));
   }
 
   const trace::Case& case_;

@@ -6,12 +6,14 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
-#include <cstdlib>
 #include <exception>
-#include <limits>
+#include <iterator>
+#include <map>
 #include <mutex>
 #include <new>
+#include <string_view>
 #include <thread>
+#include <unordered_map>
 #include <utility>
 
 #include "conformance/test/runner/subject_target.h"
@@ -116,23 +118,31 @@ bool is_nameless(const runner::Failure& failure) {
 // Gives nameless failures the rule by which the machine does what is missing; `right` is its run.
 void blame_as_machine(const runner::CaseResult& right, const trace::Case& one,
                       std::vector<runner::Failure>& failures) {
-  const std::vector<const trace::Line*> asked = one.lines();
+  std::unordered_map<std::uint32_t, const trace::Line*> kept;  // By their places in the file.
+  for (const trace::Line* line : one.lines()) kept.emplace(line->place.line, line);
+  for (const runner::Failure& its : right.failures) kept.erase(its.place.line);
+  // What it did by a rule, by node and message: the first of each time.
+  std::map<std::pair<std::string_view, std::string_view>,
+           std::map<std::int64_t, const trace::Line*>>
+      by_rule;
+  for (const trace::Line* did : right.log.lines()) {
+    if (did->op != trace::Op::kEmits || did->requirements.empty()) continue;
+    by_rule[{did->node, did->message.name}].emplace(did->time.from, did);
+  }
   for (runner::Failure& failure : failures) {
-    const auto line = std::ranges::find_if(
-        asked, [&](const trace::Line* its) { return its->place.line == failure.place.line; });
-    const bool kept = std::ranges::none_of(right.failures, [&](const runner::Failure& its) {
-      return its.place.line == failure.place.line;
-    });
-    if (!is_nameless(failure) || line == asked.end() || !kept) continue;
-    std::int64_t nearest = std::numeric_limits<std::int64_t>::max();
-    for (const trace::Line* did : right.log.lines()) {
-      if (did->op != trace::Op::kEmits || did->node != failure.node) continue;
-      if (did->message.name != (*line)->message.name || did->requirements.empty()) continue;
-      const std::int64_t apart = std::abs(did->time.from - std::int64_t{failure.from});
-      if (apart >= nearest) continue;
-      nearest = apart;
-      failure.requirements.assign(1, did->requirements.front());
+    const auto line = kept.find(failure.place.line);
+    if (!is_nameless(failure) || line == kept.end()) continue;
+    const auto all = by_rule.find({failure.node, line->second->message.name});
+    if (all == by_rule.end()) continue;
+    const std::int64_t from = failure.from;
+    auto nearest = all->second.lower_bound(from);
+    if (nearest != all->second.begin()) {
+      const auto before = std::prev(nearest);
+      const bool nearer =
+          nearest == all->second.end() || from - before->first <= nearest->first - from;
+      if (nearer) nearest = before;
     }
+    failure.requirements.assign(1, nearest->second->requirements.front());
   }
 }
 

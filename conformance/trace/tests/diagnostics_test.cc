@@ -262,7 +262,7 @@ TEST_P(Diagnostics, HaveTheirPlace) {
   const std::string text = std::string(kAbove) + GetParam().line;
   const std::string expected = std::string("t.rtr:5:") + GetParam().expected + "\n";
   EXPECT_EQ(parse(text, "t.rtr").errors(), expected);
-  EXPECT_EQ(parse_headers(text, "t.rtr").errors(), expected);
+  EXPECT_EQ(each_line(text, "t.rtr", [](const File&, const Line&) {}).errors(), expected);
 }
 
 INSTANTIATE_TEST_SUITE_P(Trace, Diagnostics, testing::ValuesIn(kWrong),
@@ -301,7 +301,8 @@ class FileDiagnostics : public testing::TestWithParam<Wrong> {};
 TEST_P(FileDiagnostics, HaveTheirPlace) {
   const std::string expected = std::string("t.rtr:") + GetParam().expected + "\n";
   EXPECT_EQ(parse(GetParam().line, "t.rtr").errors(), expected);
-  EXPECT_EQ(parse_headers(GetParam().line, "t.rtr").errors(), expected);
+  EXPECT_EQ(each_line(GetParam().line, "t.rtr", [](const File&, const Line&) {}).errors(),
+            expected);
 }
 
 INSTANTIATE_TEST_SUITE_P(Trace, FileDiagnostics, testing::ValuesIn(kWrongFiles),

@@ -83,12 +83,25 @@ TEST(Parse, LineByLineAsInWhole) {
     });
   }
   std::vector<Line> lines;
-  each_line(text, [&](const Line& line) { lines.push_back(line); });
+  std::string of_case;
+  const Parsed headers = each_line(text, "t", [&](const File& so_far, const Line& line) {
+    lines.push_back(line);
+    of_case += so_far.cases.back().name;
+  });
   EXPECT_EQ(lines, expected);
   ASSERT_EQ(lines.size(), 3u);
-  const Parsed headers = parse_headers(text, "t");
+  EXPECT_EQ(of_case, "aab");
   EXPECT_EQ(headers.errors(), "");
   EXPECT_EQ(headers.file, whole.file);
+}
+
+TEST(Parse, LinesAreTakenUpToTheFirstMistake) {
+  std::vector<std::uint32_t> taken;
+  const Parsed parsed =
+      each_line("%rtr 1\n%node m5 mote id=5\ncase a\n0 m5 > rA *\n1 m9 > rA *\n2 m5 > rA *\n", "t",
+                [&](const File&, const Line& line) { taken.push_back(line.place.line); });
+  EXPECT_FALSE(parsed.ok());
+  EXPECT_EQ(taken, std::vector<std::uint32_t>{4});
 }
 
 TEST(Parse, PrintsInOneLayout) {

@@ -182,6 +182,25 @@ TEST(Run, WhatBreaksIsAFailureOfItsCaseAlone) {
   EXPECT_EQ(exit_code(all), 1);
 }
 
+TEST(Run, WhatIsMissingBreaksTheRuleByWhichTheMachineDoesItNearestThen) {
+  const Cases cases = Cases::of_text(
+      "%rtr 1\n%node m5 mote id=5 iut\ncase c\n"
+      "0          m5 < app  join(type=telosb_demo transducers=temp actuators=led)\n"
+      "@0..50     m5 > rA   join_request(*)\n"
+      "@250..500  m5 > rA   join_request(*)\n"  // It asks at 0 and, by another rule, at 500.
+      "@251..1000 m5 > rA   join_request(*)\n"
+      "@251..700  m5 > rA   join_request(*)\n",  // That is not kept by the machine either.
+      "x.rtr");
+  FakeAttachment silent;
+  silent.make = [] { return std::make_unique<testing::Parrot>(std::vector<runner::Output>()); };
+  std::vector<std::string> blamed;
+  for (const runner::Failure& one :
+       run_one(*cases.find("c"), silent, "", std::nullopt).result.failures) {
+    blamed.push_back(one.requirements.empty() ? "" : one.requirements.front());
+  }
+  EXPECT_THAT(blamed, ElementsAre("J1-REQUEST", "J1-REQUEST", "", "J8-RETRY"));
+}
+
 TEST(Run, WhatHappensBetweenCasesIsKept) {
   const ImplementationRun ended = suite::run("x", fake([](FakeAttachment& one) {
                                                one.last = {{"ended with status 3", false, "boo\n"}};
