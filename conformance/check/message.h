@@ -39,6 +39,14 @@ struct Net {
   bool broadcast() const {
     return dest.pid == machine::kBroadcastPid || dest.devid == machine::kBroadcastDevid;
   }
+  /// Returns whether its APPID is one that each node knows. What a node does with messages for
+  /// another component is its own (T1-UNKNOWN).
+  bool for_known_app() const {
+    using rubicon::Component;
+    const auto app = static_cast<Component>(app_id);
+    return app == Component::kMockup || app == Component::kLearning ||
+           app == Component::kControlLayer;
+  }
   /// Returns both addresses, which with the number identify a message.
   std::uint64_t addresses() const {
     return std::uint64_t{dest.pid} << 48 | std::uint64_t{dest.devid} << 32 |

@@ -55,10 +55,10 @@ void Acks::arrived(std::uint16_t node, const Observation& seen, std::uint16_t se
   arrived.to_self = arrival.to_self;
   arrived.ackable = arrived.forbidden == ReqId::kNone && arrived.to_self && wants_ack(net);
   arrived.no_room = arrival.no_room;
-  arrived.must_ack = arrived.ackable && !arrival.free && !arrival.no_room;
+  arrived.must_ack = arrived.ackable && net.for_known_app() && !arrival.free && !arrival.no_room;
   arrived.doubtful = arrival.doubtful;
-  const bool known = net.sound && net.reliable <= 1 && net.trans_id == component::kConnless &&
-                     machine::is_known_app(net.app_id);
+  const bool known =
+      net.sound && net.reliable <= 1 && net.trans_id == component::kConnless && net.for_known_app();
   const bool expected = !arrival.free || arrival.delivers == "N11-SHORT"_rule;
   if (known && expected && arrived.forbidden == ReqId::kNone) {
     arrived.delivers = arrival.delivers;

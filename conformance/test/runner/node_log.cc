@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <limits>
+#include <string_view>
+#include <utility>
 
 #include "conformance/generated/profiles.h"
 #include "conformance/test/runner/run_case.h"
@@ -41,6 +43,21 @@ trace::Concrete message_of(const Output& output) {
 bool is_ack(const trace::Message& message) {
   const trace::Value* const kind = message.find("payload.trans_id");
   return kind != nullptr && kind->text == "rubicon_ack";
+}
+
+// Returns what the output is in one order with: what came by its link, but for what a timer of its
+// own caused. Which of two messages is told first that no ack came is free, as their timers may be
+// late (decision 110), and so is the order of the channels within a tick (decision 120).
+std::string order_of(const std::string& link, const trace::Message& message) {
+  const auto is = [&](const char* path, std::string_view text) {
+    const trace::Value* const value = message.find(path);
+    return value != nullptr && value->text == text;
+  };
+  if (message.name == "ack_received" && is("result", "fail")) return trace::print(message);
+  if (message.name != "syn_data" || is("status", "unknown_channel")) return link;
+  trace::Message of_channel = message;
+  std::erase_if(of_channel.fields, [](const auto& field) { return field.path == "status"; });
+  return trace::print(of_channel);
 }
 
 // Returns whether it is a frame of a type that the protocol does not have on any line: what a node
@@ -110,7 +127,9 @@ void NodeLog::read_outputs() {
   for (std::size_t i = seen_.size(); i < outputs.size(); ++i) {
     const Output& output = outputs[i];
     in_order_ = in_order_ && (i == 0 || outputs[i - 1].time <= output.time);
-    seen_.push_back({message_of(output), link_name(output), is_foreign(output)});
+    trace::Concrete message = message_of(output);
+    std::string order = order_of(link_name(output), message.message);
+    seen_.push_back({std::move(message), link_name(output), std::move(order), is_foreign(output)});
     const Seen& seen = seen_.back();
     trace::Line line =
         output.is_frame
@@ -187,10 +206,10 @@ const Output* NodeLog::take(const trace::Line& line, const Window& window,
   for (std::size_t i = begin; i < end; ++i) {
     Seen& seen = seen_[i];
     if (seen.taken || !is_about(line, seen) || !window.holds(outputs[i].time)) continue;
-    if (const auto next = next_.find(seen.link); next != next_.end() && i < next->second) continue;
+    if (const auto next = next_.find(seen.order); next != next_.end() && i < next->second) continue;
     if (!trace::match(line, seen.message, bindings)) continue;
     seen.taken = &line;
-    next_[seen.link] = i + 1;
+    next_[seen.order] = i + 1;
     return &outputs[i];
   }
   return nullptr;

@@ -51,7 +51,7 @@ class NodeLog {
   Window give(const trace::Line& line, Ticks now, const trace::Scope& scope,
               const trace::Bindings& bindings);
   /// Takes the output that fits a `>` line, and binds its variables. Returns null if there is none
-  /// so far.
+  /// so far. Outputs of a link are taken in their order, but for what timers of their own cause.
   const Output* take(const trace::Line& line, const Window& window, trace::Bindings& bindings);
   /// Lets a `?>` line take the first output in its window that no line has taken, in whatever
   /// order.
@@ -74,6 +74,7 @@ class NodeLog {
   struct Seen {
     trace::Concrete message;
     std::string link;
+    std::string order;                   // What is in one order has the same text here.
     bool foreign = false;                // `*` does not mean it.
     const trace::Line* taken = nullptr;  // By this line, if by any.
   };
@@ -90,7 +91,7 @@ class NodeLog {
   std::unique_ptr<Target> target_;
   std::map<machine::Link, std::string> link_names_;
   std::vector<Seen> seen_;                   // One for each output of the target.
-  std::map<std::string, std::size_t> next_;  // By link: the output after the last taken one.
+  std::map<std::string, std::size_t> next_;  // By order: the output after the last taken one.
   bool in_order_ = true;                     // Outputs are, in time.
   std::vector<LoggedLine> log_;
 };

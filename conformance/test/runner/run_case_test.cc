@@ -1,6 +1,7 @@
 // A case's requirements compared with a target's outputs: one row for each way to differ.
 #include "conformance/test/runner/run_case.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "conformance/test/runner/subject_target.h"
@@ -27,10 +28,11 @@ class Ticker : public Target {
     if (done_ == times_.size() || times_[done_] > time) return time;
     Output output;
     output.time = times_[done_++];
-    output.news = events::from_notice(machine::Clock{output.time});
+    output.news = events::from_notice(news_at(output.time));
     outputs_.push_back(output);
     return output.time;
   }
+  virtual machine::Notice news_at(Ticks time) const { return machine::Clock{time}; }
   const std::vector<Output>& outputs() const override { return outputs_; }
   void hold_link_acks(bool) override {}
 
@@ -137,6 +139,48 @@ INSTANTIATE_TEST_SUITE_P(
         fails("OutOfOrder", "@0..90 m5 > app clock(ms=60)\n@0..90 m5 > app clock(ms=30)\n",
               {30, 60}, "at 30 it came before one that was to come first")),
     [](const auto& row) { return std::string(row.param.name); });
+
+// The ends of messages, whose numbers are those times: up to tick 50 none was acked.
+class Awaiting : public Ticker {
+ public:
+  using Ticker::Ticker;
+  machine::Notice news_at(Ticks time) const override {
+    return machine::AckReceived{5, static_cast<std::uint16_t>(time), time > 50};
+  }
+};
+
+// The signals of the channel from 2 up to tick 50, then of that from 3; the first one is new.
+class Signalling : public Ticker {
+ public:
+  using Ticker::Ticker;
+  machine::Notice news_at(Ticks time) const override {
+    return machine::SynDataReceived{
+        time > 50 ? 0x30005U : 0x20005U,
+        time < 30 ? machine::DataStatus::kNew : machine::DataStatus::kOld};
+  }
+};
+
+// Each has a timer of its own, which may be late.
+TEST(RunCase, WhatTimersCauseIsInNoOrder) {
+  const auto ends = [](int first, const char* how, int second, const char* also) {
+    return fmt::format(
+        "@0..90 m5 > app ack_received(mockup {} {})\n@0..90 m5 > app ack_received(mockup {} {})\n",
+        first, how, second, also);
+  };
+  judge(passes("", "", {}), run<Awaiting>(ends(40, "fail", 30, "fail"), {30, 40}));
+  judge(passes("", "", {}), run<Awaiting>(ends(60, "success", 40, "fail"), {40, 60}));
+  judge(passes("", "", {}), run<Awaiting>(ends(40, "fail", 60, "success"), {40, 60}));
+  judge(fails("", "", {}, "at 60 it came before one that was to come first"),
+        run<Awaiting>(ends(70, "success", 60, "success"), {60, 70}));
+  judge(fails("", "", {}, "it emitted nothing there"),
+        run<Awaiting>(ends(40, "fail", 40, "fail"), {40}));
+  judge(passes("", "", {}), run<Signalling>("@0..90 m5 > app syn_data(3->5 old)\n"
+                                            "@0..90 m5 > app syn_data(2->5 new)\n",
+                                            {20, 60}));
+  judge(fails("", "", {}, "at 20 it came before one that was to come first"),
+        run<Signalling>("@0..90 m5 > app syn_data(2->5 old)\n@0..90 m5 > app syn_data(2->5 new)\n",
+                        {20, 40}));
+}
 
 // In real time: its times may be 10 ticks off, and it takes 4 to give it something.
 class RealTicker : public Ticker {
