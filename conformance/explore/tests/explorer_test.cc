@@ -118,15 +118,6 @@ TEST(Explore, DeployedProfileHoldsByItsOwnRules) {
   holds(options);
 }
 
-TEST(Explore, StopsAtItsLimit) {
-  Options options = network(2, 1);
-  options.states_max = 300;
-  const Result result = run(options);
-  EXPECT_FALSE(result.complete);
-  EXPECT_STRNE(result.limit, "");
-  EXPECT_FALSE(result.violation);
-}
-
 TEST(ExploreMessages, Hold) {
   Options options = network(1, 1);
   options.scope = Scope::kFull;
@@ -198,21 +189,6 @@ INSTANTIATE_TEST_SUITE_P(
                     Found{"no_ack_timeout", 1, 1, Property::kReliableEnds, 6},
                     Found{"misread_acks", 1, 1, Property::kAckCounts, 7}),
     [](const auto& param) { return std::string(param.param.flaw); });
-
-// If a flaw never acts, an unbroken run proves nothing.
-TEST(ExploreFlaws, WhetherOneActedIsReported) {
-  Options options = network(1, 1);
-  EXPECT_FALSE(run(options).step_acted);  // The machine itself.
-  options.step = flaws::find("accepts_wrong_seq")->step;
-  const Result idle = run(options);
-  EXPECT_TRUE(idle.complete);
-  EXPECT_FALSE(idle.step_acted);
-  options.calls = 2;  // Now replies to the first call meet the second.
-  options.properties = bit(Property::kQueuesBounded);
-  const Result harmless = run(options);
-  EXPECT_TRUE(harmless.complete);
-  EXPECT_TRUE(harmless.step_acted);
-}
 
 // Each flaw that is found acted in that network, be it in frames, in state or in signals.
 TEST(ExploreFlaws, AllOfTheJoinActWithOldReplies) {

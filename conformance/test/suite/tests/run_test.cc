@@ -105,12 +105,6 @@ TEST(Honesty, EachRoleHasACanary) {
   }
 }
 
-TEST(Honesty, AnAnswerToAnUnknownCommandEndsTheRun) {
-  const ImplementationRun run =
-      suite::run("x", fake([](FakeAttachment& one) { one.honest = "it said done"; }), plan());
-  EXPECT_THAT(run.dishonest, HasSubstr("an unknown command: it said done"));
-}
-
 // Starts, and lets no time pass.
 class Timeless : public testing::Parrot {
  public:
@@ -142,12 +136,6 @@ TEST(Honesty, CanBeRequired) {
   } catch (const runner::TargetBroken& error) {
     EXPECT_THAT(error.what(), HasSubstr("./b: canary.mote has to fail"));
   }
-}
-
-TEST(Honesty, WhatDoesNotStart) {
-  const ImplementationRun run =
-      suite::run("x", fake([](FakeAttachment& one) { one.starts = false; }), plan());
-  EXPECT_EQ(run.dishonest, "it does not start: no such program");
 }
 
 TEST(Run, WhatBreaksIsAFailureOfItsCaseAlone) {
@@ -248,14 +236,6 @@ TEST(Run, WhatItCannotPlayIsSkipped) {
   const RuleTotals rules = rule_totals(run);
   EXPECT_EQ(rules.kept + rules.untried, rules.all);
   EXPECT_GT(rules.untried, 0U);
-}
-
-TEST(Run, SkippedCasesAloneAreNotASuccess) {
-  SuiteRun all;
-  all.implementations.push_back(suite::run(
-      "x", fake([](FakeAttachment& one) { one.who.roles = {machine::Role::kBaseStation}; }),
-      plan({"j4.*"})));
-  EXPECT_EQ(exit_code(all), 3);
 }
 
 TEST(Run, RepeatsCountSeedsUp) {
