@@ -232,16 +232,18 @@ class Install(Base):
         fields = ("{id: high, type: b3, enum: modes}", "{id: there, type: b1}",
                   "{id: wide, type: b12}", "{id: size, type: b4, valid: {max: 4}}",
                   "{id: last, type: b20}", "{id: name, type: strz}",
-                  "{id: extra, type: u2, if: there}", "{id: two, type: u1, if: 'high == modes::on'}",
+                  "{id: extra, type: u2, if: there}",
+                  "{id: two, type: u1, if: 'high == modes::on'}",
                   "{id: part, size: size, if: there == true}",
                   "{id: line, terminator: 10, eos-error: false}")
-        packets = [b"\xb1\x02\x21\x23\x45hi\0\x12\x34\x07AB\x0d\x0a..", b"\xff\xff\x40\0\1\0\0\1",
+        packets = [b"\xb1\x02\x21\x23\x45hi\0\x12\x34\x07AB\x0d\x0a..",
+                   b"\xff\xff\x40\0\1\0\0\1",
                    b"\x0d\xff\4\1\2x\xff\0\0\1ABCDabc", b"\xa1\2\0\0\0no end", b"\x20\0\x50\0\0\0",
                    b"\x20\0\5\0\0\0", b"\x20", b"\x20\0\0\0"]
         for order in ("be", "le"):
             spec = self.folder / "bits.ksy"
-            spec.write_text(f"meta: {{id: bits, endian: be, bit-endian: {order}, encoding: UTF-8}}\n"
-                            "types:\n  told:\n    -am-type: 100\n    seq:\n" +
+            spec.write_text("meta: {id: bits, endian: be, encoding: UTF-8, bit-endian: " + order +
+                            "}\ntypes:\n  told:\n    -am-type: 100\n    seq:\n" +
                             "".join(f"      - {one}\n" for one in fields) +
                             "enums: {modes: {5: on, 1: off}}\n", encoding="utf-8")
             self.install("--spec", spec)
