@@ -164,6 +164,12 @@ struct Field {
   std::uint32_t min_size = 0;      // Bytes, all repetitions; 0 if conditional.
   std::uint32_t max_size = 0;      // Bytes; UINT32_MAX if unbounded.
   Interval range;                  // Numbers: what valid leaves, else what the width allows.
+
+  /// Returns how many of its bytes the field before it has, too: 1 for bits that begin within one.
+  std::uint32_t shared_bytes() const {
+    if (bit_width == 0) return 0;
+    return (little_endian ? bit_shift : 8 * width_bytes - bit_shift - bit_width) != 0 ? 1 : 0;
+  }
 };
 
 struct MaskBit {

@@ -224,8 +224,45 @@ class Install(Base):
         for (info, note), line in zip(found, wanted):
             self.assertEqual(info, re.sub(" +", " ", line[0][line[0].index("told"):]))
             self.assertEqual(note, line[1] if len(line) > 1 else "")
-        spec.write_text(text.replace("strz, size: 6", "strz"), encoding="utf-8")
+        spec.write_text(text.replace("strz, size: 6, encoding: ASCII",
+                                     "strz, encoding: UTF-16LE"), encoding="utf-8")
         self.assertIn("rubric --spec reads text", self.install("--spec", spec, code=66))
+
+    def test_bits_and_terminated_text_of_a_file(self):
+        fields = ("{id: high, type: b3, enum: modes}", "{id: there, type: b1}",
+                  "{id: wide, type: b12}", "{id: size, type: b4, valid: {max: 4}}",
+                  "{id: last, type: b20}", "{id: name, type: strz}",
+                  "{id: extra, type: u2, if: there}",
+                  "{id: two, type: u1, if: 'high == modes::on'}",
+                  "{id: part, size: size, if: there == true}",
+                  "{id: line, terminator: 10, eos-error: false}")
+        packets = [b"\xb1\x02\x21\x23\x45hi\0\x12\x34\x07AB\x0d\x0a..",
+                   b"\xff\xff\x40\0\1\0\0\1",
+                   b"\x0d\xff\4\1\2x\xff\0\0\1ABCDabc", b"\xa1\2\0\0\0no end", b"\x20\0\x50\0\0\0",
+                   b"\x20\0\5\0\0\0", b"\x20", b"\x20\0\0\0"]
+        for order in ("be", "le"):
+            spec = self.folder / "bits.ksy"
+            spec.write_text("meta: {id: bits, endian: be, encoding: UTF-8, bit-endian: " + order +
+                            "}\ntypes:\n  told:\n    -am-type: 100\n    seq:\n" +
+                            "".join(f"      - {one}\n" for one in fields) +
+                            "enums: {modes: {5: on, 1: off}}\n", encoding="utf-8")
+            self.install("--spec", spec)
+            found, wanted = self.told(spec, [self.packet(one) for one in packets])
+            self.assertEqual(len(found), len(packets))
+            for (info, note), line in zip(found, wanted):
+                line = [re.sub(r" \+\d+ stale$", "", one) for one in line]
+                self.assertEqual(info.split(" !! ")[0],
+                                 re.sub(" +", " ", line[0][line[0].index("told"):]))
+                fault = " !! " in info
+                self.assertEqual(note, re.sub(r" at \d+:", ":" if fault else r"\g<0>",
+                                              line[1] if len(line) > 1 else ""))
+            done = run("tshark", "-r", self.folder / "packets.pcapng", "-T", "fields", "-E",
+                       "separator=,", "-e", "rubric.told.high", "-e", "rubric.told.wide", "-e",
+                       "rubric.told.last", env=self.environment)
+            table = run(RUBRIC, "decode", self.folder / "packets.pcapng", "--spec", spec,
+                        "--format", "csv", "--fields", "high,wide,last")
+            rows = table.stdout.replace("\r", "").splitlines()[1:]
+            self.assertEqual(done.stdout.splitlines(), rows)
 
     def test_a_protocol_that_does_not_ship(self):
         said = self.install("--spec", "prinft", code=64)

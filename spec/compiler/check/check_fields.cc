@@ -19,12 +19,12 @@ void check_bytes(Check& check, Field& field) {
               "type, size, size-eos or contents was expected");
 }
 
-/// Text and bits are read at run time alone; a dissector shows text whose size is known before it.
+/// Text and bits are read at run time and by dissectors, which know terminators of one byte.
 void check_plain(Check& check, const Field& field) {
   if (check.at_run_time) return;
   const SourcePlace& place = place_of(field.places, "type", field.place);
-  const bool shown = !check.for_code && field.extent != ExtentKind::kTerminated;
-  if (field.text && !shown) {
+  const bool ends = field.extent == ExtentKind::kTerminated;
+  if (field.text && (check.for_code || (ends && field.text->unit > 1))) {
     check.error(place, fmt::format("text or a terminator in {}", quote(field.id)),
                 "bytes were expected; rubric --spec reads text");
   }
@@ -32,7 +32,7 @@ void check_plain(Check& check, const Field& field) {
     check.error(place_of(field.places, "repeat", field.place), "repeat: until",
                 "a count was expected, so that the size is known before; rubric --spec reads it");
   }
-  if (field.bit_width > 0) {
+  if (field.bit_width > 0 && check.for_code) {
     check.error(place, "bits outside a mask",
                 "-mask: 8 or -mask: 16 was expected at the type; rubric --spec reads bits");
   }

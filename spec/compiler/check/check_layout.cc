@@ -84,22 +84,13 @@ class Layout {
     bits_ = 0;
   }
 
-  /// Returns how many bytes of a field the one before it has too.
-  static std::uint32_t shared_bytes(const Field& field) {
-    if (field.bit_width == 0) return 0;
-    const int begin = field.little_endian
-                          ? field.bit_shift
-                          : 8 * field.width_bytes - field.bit_shift - field.bit_width;
-    return begin != 0 ? 1 : 0;
-  }
-
   void place(Field& field, std::size_t index) {
     const Scope scope{type_, index};
     if (is_open_) check_.open.insert(&field);
     check_field_shape(check_, field);
     check_values(check_, field, scope);
     const bool conditional = resolve_condition(field, scope);
-    field.fixed_offset = offset_ < 0 ? -1 : offset_ - shared_bytes(field);
+    field.fixed_offset = offset_ < 0 ? -1 : offset_ - field.shared_bytes();
     if (field.choice) check_switch(check_, *field.choice, field, scope);
     const bool extent_ok = resolve_number(field, field.size, scope, "size");
     const bool count_ok = resolve_number(field, field.count, scope, "count");
@@ -193,7 +184,7 @@ class Layout {
       case ValueKind::kBytes: return {0, kUnbounded};
       case ValueKind::kStruct: break;
       default: {
-        const auto width = static_cast<std::uint32_t>(field.width_bytes) - shared_bytes(field);
+        const auto width = static_cast<std::uint32_t>(field.width_bytes) - field.shared_bytes();
         return {width, width};
       }
     }

@@ -53,6 +53,13 @@ std::string full_name(const Named& named) {
 
 std::string load_text(const Expr& expr) {
   const Field& field = *expr.field;
+  if (field.bit_width > 0) {
+    const std::string bits =
+        fmt::format("d:bits({}, {}, {}, {}, {})", expr.offset_bytes, field.width_bytes,
+                    field.little_endian, field.bit_shift, field.bit_width);
+    const bool is_bool = field.bit_width == 1 && field.enumeration == nullptr && !expr.to_i;
+    return is_bool ? "(" + bits + " == 1)" : bits;
+  }
   const std::string order = field.width_bytes == 1 ? "u" : field.little_endian ? "le" : "be";
   return fmt::format("d:{}{}({})", order, 8 * field.width_bytes, expr.offset_bytes);
 }
@@ -67,6 +74,7 @@ std::string_view operator_text(ExprOp op) {
 }
 
 std::string expr_text(const Expr& expr) {
+  if (expr.is_bool) return expr.value != 0 ? "true" : "false";
   if (expr.op == ExprOp::kInt || expr.op == ExprOp::kEnumValue) return std::to_string(expr.value);
   if (expr.op == ExprOp::kField) return load_text(expr);
   const std::string left = expr_text(*expr.operands[0]);
@@ -121,6 +129,11 @@ std::string field_text(const Field& field) {
   Entry entry;
   entry.add_text("name", field.name);
   entry.add_text("kind", kKinds[static_cast<std::size_t>(field.kind)]);
+  if (field.bit_width != 0) {
+    entry.add("bits", std::to_string(field.bit_width));
+    entry.add("shift", std::to_string(field.bit_shift));
+    if (field.shared_bytes() != 0) entry.add("shares", "true");
+  }
   if (field.width_bytes != 0) entry.add("width", std::to_string(field.width_bytes));
   if (field.little_endian && field.width_bytes > 1) entry.add("little", "true");
   if (field.valid && field.valid->one_of.empty()) {
@@ -141,6 +154,10 @@ std::string field_text(const Field& field) {
   entry.add_function("size", field.size);
   entry.add_function("count", field.count);
   entry.add_function("condition", field.condition);
+  if (field.extent == ExtentKind::kTerminated) {
+    entry.add("ends_with", std::to_string(field.text->terminator));
+    if (field.text->may_lack_its_end) entry.add("may_lack_its_end", "true");
+  }
   // Text in another encoding is shown as bytes.
   if (field.text && field.text->encoding != Encoding::kNone &&
       field.text->encoding != Encoding::kOther) {

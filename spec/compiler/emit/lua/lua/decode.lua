@@ -24,6 +24,16 @@ local function number_at(bytes, at, width, little)
   return value
 end
 
+local function bits_of(number, shift, bits)
+  return math.floor(math.floor(number / 2 ^ shift) % 2 ^ bits)
+end
+
+function Window:bits(offset, width, little, shift, bits)
+  local at = self.base + offset
+  if at + width > self.limit then return 0 end
+  return bits_of(number_at(self.bytes, at, width, little), shift, bits)
+end
+
 local function loader(width, little)
   return function(self, offset)
     local at = self.base + offset
@@ -38,6 +48,7 @@ Window.le32 = loader(4, true)
 
 local function load_number(field, bytes, at)
   local value = number_at(bytes, at, field.width, field.little)
+  if field.bits then return bits_of(value, field.shift, field.bits) end
   if field.kind == "sint" and value >= 2 ^ (8 * field.width - 1) then
     value = value - 2 ^ (8 * field.width)
   end
@@ -114,7 +125,8 @@ local function text_of(field, bytes)
     parts[#parts + 1] = length and text:sub(at, at + length - 1) or "\239\191\189"
     at = at + (length or 1)
   end
-  local last = field.terminator and #text < #bytes and string.char(field.terminator) or ""
+  local ends = field.terminator and (field.ends_with or #text < #bytes)
+  local last = ends and string.char(field.terminator) or ""
   local fill = (field.terminator or field.padding) and string.char(field.padding or 0) or ""
   local again = text .. last .. fill:rep(#bytes - #text - #last)
   return table.concat(parts), wrong, not wrong and again == bytes
@@ -130,6 +142,7 @@ end
 
 function Decoder:number(parent, field, at, limit)
   local width = field.width
+  if field.shares then at = at - 1 end  -- Its first bits are in the last byte of the field before.
   if limit - at < width then
     local text = string.format("%s needs %d bytes, the bytes end at %d", field.name, width, limit)
     return self:fail("truncated", limit, field, text), at
@@ -216,6 +229,14 @@ function Decoder:other(parent, field, base, at, limit)
       return self:truncated(parent, field, at, limit, size)
     end
     last = at + size
+  end
+  if field.ends_with then
+    local stop = self.bytes:find(string.char(field.ends_with), at + 1, true)
+    if stop and stop <= limit then
+      last = stop
+    elseif not field.may_lack_its_end then
+      return self:truncated(parent, field, at, limit, limit - at + 1)
+    end
   end
   if field.repeated then return self:array(parent, field, base, at, last) end
   if field.kind == "bytes" then

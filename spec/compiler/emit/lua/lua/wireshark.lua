@@ -58,6 +58,11 @@ local function define_field(field, prefix)
     define(abbreviation, function()
       return ProtoField.float(abbreviation, field.name, field.doc)
     end)
+  elseif field.bits then
+    define(abbreviation, function()
+      return ProtoField.uint32(abbreviation, field.name, base.DEC, enums[field.enum], nil,
+                               field.doc)
+    end)
   elseif field.width then
     define(abbreviation, function()
       return NUMBERS[field.kind][field.width](abbreviation, field.name, base.DEC,
@@ -158,7 +163,8 @@ end
 local function add_number(tree, abbreviation, field, node, view)
   local range = range_of(view, node.offset, node.size)
   local add_to = field.little and tree.add_le or tree.add
-  local item = add_to(tree, fields[abbreviation], range)
+  local item = field.bits and tree:add(fields[abbreviation], range, node.value) or
+      add_to(tree, fields[abbreviation], range)
   if field.enum and not enums[field.enum][node.value] then
     item:set_text(string.format("%s: %d", field.name, node.value))
   end
