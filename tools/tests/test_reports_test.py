@@ -157,7 +157,7 @@ class Formats(Folder):
         self.assertRegex(test(*args, "--verbose")[1], r"1 pass in [0-9.]+ s\.")
 
     def test_annotations_in_actions(self):
-        _, _, err = test("--target", self.impatient_mote(), "--rule", "J8",
+        _, _, err = test("--target", self.impatient_mote(), "--cases", "j8.*",
                          env={"GITHUB_ACTIONS": "true"})
         self.assertIn("::error file=conformance/cases/j8.rtr,line=", err)
 

@@ -58,7 +58,7 @@ using runner::CaseVerdict;
 // of those in which a generated mutant differs from the machine.
 constexpr unsigned kEvery = 40;
 constexpr unsigned kEveryShown = 4;
-constexpr unsigned kEveryShipped = 10;
+constexpr unsigned kEveryShipped = 8;
 constexpr unsigned kEveryGenerated = 24;
 const suite::Cases& cases() {
   static const suite::Cases own = suite::Cases::own();
