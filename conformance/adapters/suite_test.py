@@ -9,7 +9,6 @@ the cases for nodes that are built with such a parameter, too.
 import argparse
 import json
 import pathlib
-import re
 import subprocess
 import sys
 
@@ -31,8 +30,7 @@ def main():
     wrong = passed = others = left_out = 0
     for case in run["cases"]:
         plays = set(case["roles"]) <= set(run["roles"])
-        unbuilt = any(case["reason"].startswith(f"it is not built with {parameter}=") or
-                      re.match(rf"`reset [^`]* {parameter}=", case["reason"])
+        unbuilt = any(case["reason"].startswith(f"it is not built with {parameter}=")
                       for parameter in asked.without)
         wanted = "pass" if plays and not unbuilt else "skip"
         passed += case["verdict"] == "pass"
