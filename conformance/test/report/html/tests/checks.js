@@ -65,7 +65,7 @@ async function compared(page, go) {
   await go('#/cases?verdict=changed');
   const names = await texts(page, '#matrix tbody th');
   assert.deepStrictEqual(names, ['j4.wrong_seq', 'j8.stray_replies',
-    'j4.many_replies', 'second_life.mote', 'wide.mote_reply_number']);
+    'j4.many_replies', 'second_life.mote_joins', 'wide.mote_reply_number']);
   assert.deepStrictEqual(await texts(page, '#matrix tbody .flag'),
     ['was pass', 'was pass', 'was pass', 'was pass', 'was pass']);
   await go('#/cases?text=j4.wrong_seq.again');
