@@ -54,6 +54,7 @@ def rebuild(build, root, copy):
         words[at:at + 2] = ["-O0", "-o", objects[-1]]  # It runs a few times.
         words[words.index("-MF") + 1] = f"{ours}.d"
         words[-1] = str(ours)
+        words = [word for word in words if word != "-Winvalid-pch"]  # Precompiled for others.
         run([f"-I{copy}" if word == f"-I{root}" else word for word in words], build)
     program = copy / ".bin/rubric"
     program.unlink()
