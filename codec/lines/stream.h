@@ -62,7 +62,7 @@ class ByteStream {
   Descriptor descriptor_;
 };
 
-/// The host that is meant where nobody names one.
+/// The host of an address that names none.
 constexpr const char* kThisHost = "127.0.0.1";
 /// An Internet address as the user wrote it.
 struct HostPort {

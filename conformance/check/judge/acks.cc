@@ -196,7 +196,7 @@ void Acks::sent(std::uint16_t node, const Observation& seen, const Net& ack,
     judge_ack_order(node, seen, *best);
   }
   apps_[node].acked.insert(ack.app_id);
-  // So it has come, and an application of which the log tells gets it.
+  // An acked message did come, and must be delivered if the log tells of its application.
   const bool logged = apps_[node].delivered.contains(ack.app_id);
   best->sure = best->sure || (logged && !context_.device(node).hearing);
   for (const ReqId rule : {"T2-ACK"_rule, "T2-ONCE"_rule, "T2-CONTENT"_rule}) {

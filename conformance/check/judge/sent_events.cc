@@ -105,7 +105,7 @@ void Originals::told(std::uint16_t node, const Observation& seen, const machine:
     for (std::size_t i = 0; i < calls_[node].size(); ++i) {  // It may have left unseen.
       const Call& call = calls_[node].newest(i);
       if (call.result != ack.seq_num || !call.send->reliable) continue;
-      // What is acked did leave.
+      // A message that is acked must have left.
       before = before || came || context_.before_captures(node, call.place.time_us);
       line = line || call.line != Link::kRadio;
     }

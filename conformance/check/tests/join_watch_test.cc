@@ -183,7 +183,7 @@ TEST(JoinWatch, ACallLastsAsLongAsItsRequestsThatEscaped) {
   EXPECT_NE(fails(5500, false).find("F:J8-FAIL"), std::string::npos) << fails(5500, false);
 }
 
-// Five requests that nobody answers, 488 ms apart.
+// Returns a capture of five requests, 488 ms apart, that nobody answers.
 Script five_requests(double ms) {
   Script script;
   script.join(0, 11, 3, 100);
@@ -212,7 +212,7 @@ TEST(JoinWatch, ALogThatBeginsLateHasNoCallFromBefore) {
   EXPECT_NE(from(0).find("F:J5-ONCE"), std::string::npos) << from(0);
 }
 
-// The first ack_join escaped; the application is told of it before the repeat that was captured.
+// The capture lacks the first ack_join, and has a repeat after the event that tells of it.
 TEST(JoinWatch, AnEventBeforeARepeatedAckJoinIsItsEvent) {
   const auto told = [](int ms) {
     Script script;

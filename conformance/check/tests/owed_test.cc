@@ -275,7 +275,7 @@ TEST(OwedBesideCaptures, WhatGoesByPeisIsNotSeen) {
   EXPECT_NE(pc_gets(11, 2).find("F:N2-IN-ORDER"), std::string::npos) << pc_gets(11, 2);
 }
 
-// What mote 2 sends at 5000 ms, and its application is told of, was not captured.
+// The capture lacks a message that mote 2 sends at 5000 ms; its log says that it was acked.
 std::string acked(bool ack, bool before) {
   Script script;
   if (before) script.join(0, 11, 2, 100);
@@ -322,7 +322,7 @@ TEST(OwedBesideCaptures, WhatIsAckedWasSent) {
       << sink_acked(false, false);
 }
 
-// Mote 2 acks three messages, of which its application gets those that `gets` says.
+// Mote 2 acks three messages; its application gets those for which `gets` has a letter.
 std::string gets_of_acked(const std::string& gets) {
   Script script;
   script.join(0, 11, 2, 100);
