@@ -12,6 +12,7 @@
 namespace rubric {
 namespace {
 
+using nlohmann::json;
 using namespace testing;
 
 const char* const kFirmware = "spec/captures/firmware";
@@ -35,10 +36,9 @@ TEST(Captures, SerialBytesAreTheFramesListed) {
   for (const std::string& path : files(kFirmware, ".bin")) {
     const bool inbound = path.ends_with(".serial_in.bin");
     const std::string stem = path.substr(0, path.find('.'));
-    std::vector<std::string> rows;
-    for (const std::string& row : rows_of(stem + ".sf.jsonl")) {
-      if (member(row, "dir") == (inbound ? "serial_in" : "serial_out") &&
-          number(row, "node") == node_of(path, 1)) {
+    std::vector<json> rows;
+    for (const json& row : read_jsonl(stem + ".sf.jsonl")) {
+      if (row["dir"] == (inbound ? "serial_in" : "serial_out") && row["node"] == node_of(path, 1)) {
         rows.push_back(row);
       }
     }
@@ -48,14 +48,14 @@ TEST(Captures, SerialBytesAreTheFramesListed) {
     ASSERT_EQ(got.size(), rows.size()) << path;
     std::string rewritten;
     for (std::size_t i = 0; i < got.size(); ++i) {
-      const std::string& row = rows[i];
+      const json& row = rows[i];
       const Packet& p = got[i].packet;
-      EXPECT_EQ(hdlc_of(got[i]), member(row, "hdlc")) << path << ' ' << i;
-      EXPECT_EQ(p.kind, number(row, "proto"));
-      EXPECT_EQ(p.error.fault == Fault::kNone ? "true" : "false", member(row, "crc_ok"));
-      const std::int64_t token = number(row, "ack_token").value_or(kAbsent);
-      EXPECT_EQ(p.serial_seq, number(row, "seqno").value_or(token));
-      EXPECT_EQ(to_hex(view(got[i].bytes)), member(row, "sf").value_or(""));
+      EXPECT_EQ(hdlc_of(got[i]), row["hdlc"]) << path << ' ' << i;
+      EXPECT_EQ(p.kind, row["proto"]);
+      EXPECT_EQ(p.error.fault == Fault::kNone, row["crc_ok"].get<bool>());
+      const int absent = kAbsent;
+      EXPECT_EQ(p.serial_seq, row.value("seqno", row.value("ack_token", absent)));
+      EXPECT_EQ(to_hex(view(got[i].bytes)), row.value("sf", ""));
       HdlcWriter().write(got[i].get(), rewritten);
     }
     EXPECT_EQ(rewritten, stream) << path;
@@ -66,7 +66,7 @@ TEST(Captures, SerialBytesAreTheFramesListed) {
   }
   std::cout << streams << " serial streams, " << frames << " frames\n";
   std::size_t listed = 0;
-  for (const std::string& path : files(kFirmware, ".sf.jsonl")) listed += rows_of(path).size();
+  for (const std::string& path : files(kFirmware, ".sf.jsonl")) listed += read_jsonl(path).size();
   EXPECT_EQ(frames, listed);
   EXPECT_EQ(streams, 17u);
 }
@@ -78,9 +78,8 @@ TEST(Captures, ForwarderStreamsAreThePacketsListed) {
     const bool to_sink = path.ends_with(".to_sink.sfstream");
     const std::string stem = path.substr(0, path.find('.'));
     std::vector<std::string> expected;
-    for (const std::string& row : rows_of(stem + ".sf.jsonl")) {
-      if (member(row, "dir") != (to_sink ? "to_sink" : "from_sink")) continue;
-      expected.push_back(member(row, "hex").value());
+    for (const json& row : read_jsonl(stem + ".sf.jsonl")) {
+      if (row["dir"] == (to_sink ? "to_sink" : "from_sink")) expected.push_back(row["hex"]);
     }
     const std::string stream = read_file(path);
     EXPECT_EQ(detect(view(stream)), InputFormat::kSf) << path;
@@ -114,27 +113,22 @@ std::string line(std::int64_t time_us, const std::string& interface, Direction d
 
 std::vector<std::string> expected_lines(const std::string& stem) {
   std::vector<std::string> lines;
-  for (const std::string& row : rows_of(stem + ".sf.jsonl")) {
-    const bool inbound = member(row, "dir") == "serial_in";
-    lines.push_back(line(number(row, "t_us").value(), "serial:" + member(row, "node").value(),
-                         inbound ? Direction::kInbound : Direction::kOutbound,
-                         member(row, "hdlc").value()));
+  for (const json& row : read_jsonl(stem + ".sf.jsonl")) {
+    const std::string hdlc = row["hdlc"];
+    const auto direction = row["dir"] == "serial_in" ? Direction::kInbound : Direction::kOutbound;
+    lines.push_back(
+        line(row["t_us"], "serial:" + std::to_string(row["node"].get<int>()), direction, hdlc));
   }
-  for (const std::string& row : rows_of(stem + ".radio.jsonl")) {
-    if (member(row, "dir") != "tx" && member(row, "dir") != "inj") continue;
+  for (const json& row : read_jsonl(stem + ".radio.jsonl")) {
+    if (row["dir"] != "tx" && row["dir"] != "inj") continue;
     char header[32];
-    const auto value = [&row](const char* name) {
-      return static_cast<int>(number(row, name).value());
-    };
-    const auto swapped = [&value](const char* name) {
-      return (value(name) & 0xFF) << 8 | value(name) >> 8;
-    };
+    const auto swap = [](int v) { return (v & 0xFF) << 8 | v >> 8; };
     std::snprintf(header, sizeof(header), "%s88%02x%04x%04x%04x3f%02x",
-                  number(row, "ackreq") == 1 ? "61" : "41",
-                  static_cast<int>(number(row, "dsn").value_or(0)), swapped("group"),
-                  swapped("dst"), swapped("src"), value("am_type"));
-    lines.push_back(line(number(row, "t_us").value(), "radio", Direction::kUnknown,
-                         header + member(row, "payload").value()));
+                  row.value("ackreq", 0) == 1 ? "61" : "41", row.value("dsn", 0),
+                  swap(row["group"]), swap(row["dst"]), swap(row["src"]),
+                  row["am_type"].get<int>());
+    lines.push_back(line(row["t_us"], "radio", Direction::kUnknown,
+                         header + row["payload"].get<std::string>()));
   }
   std::sort(lines.begin(), lines.end());
   return lines;

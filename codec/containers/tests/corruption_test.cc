@@ -21,8 +21,8 @@ using namespace testing;
 std::vector<std::string> captured_frames() {
   std::vector<std::string> frames;
   for (const std::string& path : files("spec/captures/firmware", ".sf.jsonl")) {
-    for (const std::string& row : rows_of(path)) {
-      frames.push_back(from_hex(member(row, "hdlc").value()));
+    for (const auto& row : read_jsonl(path)) {
+      frames.push_back(from_hex(row["hdlc"].get<std::string>()));
     }
   }
   return frames;
