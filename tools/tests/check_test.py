@@ -410,6 +410,19 @@ class Inputs(Folder):
         code, out, err = check(air, app, "--sniffer", "complete", "--start", "cold")
         self.assertEqual((code, err), (0, ""), out)
         self.assertIn("application log", out)
+        # The frames that the log has as well give way.
+        for whole in "", " whole":
+            text = re.sub("(%node .*)", rf"\1{whole}", log.read_text())
+            both = self.write("both.rtr", text)
+            code, out, err = check(air, both, "--sniffer", "complete", "--start", "cold")
+            self.assertEqual((code, err), (0, ""), out)
+            self.assertIn(f"{both}: its frames on the air are left out, as {air} has them",
+                          " ".join(out.split()))
+            wrong = self.write("wrong.rtr", text.replace("joined(address=11:4 result=success)",
+                                                         "joined(address=11:9 result=success)"))
+            found = failures(as_json(air, wrong))
+            self.assertEqual([(one["requirement"], one["file"]) for one in found],
+                             [("J5-SUCCESS", str(wrong))])
 
     def test_testers_are_not_judged(self):
         self.assertEqual(as_json(WRONG_SEQ, "--tester", "2")["counts"]["fail"], 0)

@@ -22,6 +22,10 @@ struct Source {
   std::vector<std::uint32_t> frames;  // Indices into Run::seen.
 };
 
+bool is_frame(const Observation& seen) {
+  return seen.kind == Observation::Kind::kRadio || seen.kind == Observation::Kind::kSerial;
+}
+
 bool same_frame(const Observation& a, const Observation& b) {
   return a.kind == b.kind && (!a.has_dsn || !b.has_dsn || a.dsn == b.dsn) &&
          a.frame.dest == b.frame.dest && a.frame.src == b.frame.src &&
@@ -45,6 +49,7 @@ class Duplicates {
     collect();
     if (!logs_fit(error)) return false;
     dropped_.assign(run_.seen.size(), false);
+    drop_logged();
     for (std::size_t b = 1; b < sources_.size(); ++b) {
       for (std::size_t a = 0; a < b; ++a) {
         if (sources_[a].file == sources_[b].file || sources_[a].link != sources_[b].link) continue;
@@ -71,9 +76,7 @@ class Duplicates {
       const Observation& seen = run_.seen[i];
       const Link link = run_.taps[seen.tap].link;
       const bool radio = link == Link::kRadio && seen.kind == Observation::Kind::kLinkAck;
-      const bool frame =
-          seen.kind == Observation::Kind::kRadio || seen.kind == Observation::Kind::kSerial;
-      if (!(frame || radio) || !seen.node.empty()) continue;
+      if (!(is_frame(seen) || radio) || !seen.node.empty()) continue;
       auto source = std::ranges::find_if(sources_, [&](const Source& s) { return has(s, seen); });
       if (source == sources_.end()) {
         const std::int64_t time_us = seen.place.time_us;
@@ -89,31 +92,53 @@ class Duplicates {
 
   std::string file(std::uint32_t index) const { return run_.files[index]; }
 
-  // Checks that logs and captures do not overlap: their frames cannot be told apart.
+  // Checks that each node has one log.
   bool logs_fit(std::string& error) const {
     std::map<std::string_view, std::uint32_t> log_of;
     for (const Observation& seen : run_.seen) {
       if (seen.node.empty()) continue;
       const auto [known, added] = log_of.emplace(seen.node, seen.place.file);
-      if (!added && known->second != seen.place.file) {
-        error = file(seen.place.file) + ": what node " + std::string(seen.node) + " did is in " +
-                file(known->second) +
-                " as well; give one log of each node, or leave one out with --frames N:none";
-        return false;
-      }
-      const bool radio = seen.kind == Observation::Kind::kRadio;
-      if (!radio && seen.kind != Observation::Kind::kSerial) continue;
-      for (const Source& source : sources_) {
-        if ((source.link == Link::kRadio) != radio) continue;
-        if (seen.place.time_us < source.first_us || seen.place.time_us > source.last_us) continue;
-        error = file(seen.place.file) + ":" + std::to_string(seen.place.offset_bytes) +
-                ": frames " + (radio ? "on the air" : "of serial lines") + " are in " +
-                file(source.file) +
-                " as well; give one of the two, or the log's application lines alone";
-        return false;
-      }
+      if (added || known->second == seen.place.file) continue;
+      error = file(seen.place.file) + ": what node " + std::string(seen.node) + " did is in " +
+              file(known->second) +
+              " as well; give one log of each node, or leave one out with --frames N:none";
+      return false;
     }
     return true;
+  }
+
+  // Leaves frames that logs have at the time of a capture of that link to the capture: which of
+  // them are the same cannot be told. What a node was given is then no longer known.
+  void drop_logged() {
+    using Links = std::pair<std::uint32_t, Link>;
+    std::map<Links, std::uint32_t> captured;  // Files of captures, by logs and links.
+    for (const Observation& seen : run_.seen) {
+      if (seen.node.empty() || !is_frame(seen)) continue;
+      const Link link = run_.taps[seen.tap].link;
+      for (const Source& source : sources_) {
+        if (source.link != link) continue;
+        if (seen.place.time_us < source.first_us || seen.place.time_us > source.last_us) continue;
+        captured.emplace(Links(seen.place.file, link), source.file);
+        break;
+      }
+    }
+    for (const auto& [log, capture] : captured) {
+      const auto& [log_file, link] = log;
+      run_.facts.push_back(file(log_file) + ": its frames " +
+                           (link == Link::kRadio ? "on the air" : "of serial lines") +
+                           " are left out, as " + file(capture) + " has them");
+      for (LoggedNode& node : run_.nodes) {
+        if (node.file != log_file) continue;
+        const bool base_station = node.role == machine::Role::kBaseStation;
+        node.hearing = node.hearing && (link == Link::kRadio) == base_station;
+        node.whole = false;
+      }
+    }
+    for (std::size_t i = 0; i < run_.seen.size(); ++i) {
+      const Observation& seen = run_.seen[i];
+      dropped_[i] = !seen.node.empty() && is_frame(seen) &&
+                    captured.contains({seen.place.file, run_.taps[seen.tap].link});
+    }
   }
 
   // Counts frames that both have between `lo` and `hi`, one for one.
