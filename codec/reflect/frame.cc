@@ -111,9 +111,7 @@ void FrameDecoder::decode(const Packet& packet, Frame& out) const {
       break;
     case Envelope::Kind::kMessage:
       decode_carrier(*envelope.carrier, packet.bytes, out.decoded);
-      find_payload(out, envelope.carrier == serial_         ? serial_is_am_
-                        : envelope.carrier == radio_i_.type ? radio_i_.is_am
-                                                            : radio_t_.is_am);
+      find_payload(out, envelope.is_am);
       break;
     case Envelope::Kind::kLink:
       reflect::decode(*envelope.carrier, packet.bytes, Tail::kFault, true, out.decoded);
@@ -157,6 +155,7 @@ void FrameDecoder::serial_headers(Bytes bytes, Envelope& out) const {
               Am::TypeAt::load(p)};
   }
   out.carrier = serial_;
+  out.is_am = serial_is_am_;
   out.kind = serial_ ? Envelope::Kind::kMessage : Envelope::Kind::kOpaque;
 }
 
@@ -220,6 +219,7 @@ void FrameDecoder::radio_headers(Bytes bytes, Envelope& out) const {
     return;
   }
   out.carrier = carrier.type;
+  out.is_am = carrier.is_am;
   out.kind = Envelope::Kind::kMessage;
   if (bytes.size() < carrier.payload_at) return;
   out.am = {true,
@@ -254,16 +254,12 @@ Envelope FrameDecoder::open(const Packet& packet) const {
   out.error = packet.error;
   if (out.error.fault != Fault::kNone || !out.carrier) return out;
   const Bytes bytes = packet.bytes;
-  bool sound = false;
-  if (out.kind == Envelope::Kind::kLink) {
-    sound = false;  // Nothing less than decoding it says.
-  } else if (out.kind == Envelope::Kind::kLinkAck) {
+  bool sound = out.am.present;  // Of another frame of 802.15.4 nothing less than decoding it says.
+  if (out.kind == Envelope::Kind::kLinkAck) {
     sound = bytes.size() == tinyos::MacAckView::kMaxSizeBytes;
   } else if (out.carrier == serial_) {
     sound = out.am.present && Am::LengthAt::allows(out.am.length) &&
             bytes.size() - kAmHeaderBytes == out.am.length;
-  } else {
-    sound = out.am.present;
   }
   if (sound) {
     if (out.am.present) out.payload = bytes.from(bytes.size() - out.am.length);

@@ -48,6 +48,7 @@ struct Envelope {
   ActiveMessage am;
   MacHeader mac;
   const Type* carrier = nullptr;  ///< kMessage, kLink, acknowledgements of 802.15.4.
+  bool is_am = false;             ///< kMessage: the headers of `carrier` are TinyOS's.
   Bytes payload;                  ///< kMessage without an error: that of the active message.
   /// Of the framing, else of the headers; those of the message are not known yet.
   Error error{Fault::kNone, 0, ReqId::kNone};

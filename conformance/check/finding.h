@@ -46,6 +46,7 @@ struct Finding {
   bool beyond = false;                 ///< No profile accepts this of its rule.
 };
 
+/// Of a run, by its gravest finding: in the order of Severity, as without one a run passes.
 enum class Verdict : std::uint8_t { kPass, kWeak, kStray, kInconclusive, kFail };
 
 }  // namespace rubric::check
