@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "codec/reflect/requirements.h"
-#include "conformance/check/judge/peis_watch.h"
 #include "conformance/check/links.h"
 
 namespace rubric::check {
@@ -268,7 +267,7 @@ bool Context::line_recorded(std::uint16_t sink, std::int64_t time_us) const {
 
 bool Context::by_peis(std::uint16_t node, std::uint16_t island) const {
   const Device& d = device(node);
-  return d.role == machine::Role::kBaseStation && island != d.island && !logs_peis(run, node);
+  return d.role == machine::Role::kBaseStation && island != d.island && !logs_peis(node);
 }
 
 void Context::needs_host(std::uint16_t sink, const Place& at) {

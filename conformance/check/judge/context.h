@@ -236,6 +236,10 @@ struct Context {
   /// Returns whether a sink's line has only the sink's own frames in the run, as if recorded from a
   /// line in use that others write to: whatever came down it is unknown.
   bool half_heard(std::uint16_t node) const;
+  /// Returns whether the log has the messages from `node` to PEIS and back.
+  bool logs_peis(std::uint16_t node) const {
+    return node < run.nodes.size() && run.nodes[node].peis;  // A log's nodes are the first devices.
+  }
   /// Returns whether messages of that island come to the node where no log and no tap is read.
   bool by_peis(std::uint16_t node, std::uint16_t island) const;
   /// Counts something that depends on what came down such a line; finish() reports all at once.

@@ -22,10 +22,6 @@ machine::Router base_station(machine::Address own, std::uint16_t sink_am) {
 
 }  // namespace
 
-bool logs_peis(const Run& run, std::uint16_t node) {
-  return node < run.nodes.size() && run.nodes[node].peis;  // A log's nodes are the first devices.
-}
-
 PeisWatch::PeisWatch(Context& context, std::size_t devices) : context_(context), bases_(devices) {}
 
 PeisWatch::Message* PeisWatch::match(Messages& messages, const Net& net) {
@@ -39,7 +35,7 @@ PeisWatch::Message* PeisWatch::match(Messages& messages, const Net& net) {
 
 void PeisWatch::came_up(std::uint16_t base, std::uint16_t island, const Observation& seen,
                         const Net& net, bool on) {
-  if (!logs_peis(context_.run, base) || island == kNoIsland) return;
+  if (!context_.logs_peis(base) || island == kNoIsland) return;
   const machine::Route route =
       machine::route_received(base_station({island, machine::kNullDevid}, context_.sink_am),
                               Link::kSerial, net.dest, net.src);
@@ -137,7 +133,7 @@ void PeisWatch::given(std::uint16_t base, const Observation& seen, const Net& ne
 }
 
 void PeisWatch::went_down(std::uint16_t base, const Observation& seen, const Net& net) {
-  if (!logs_peis(context_.run, base)) return;
+  if (!context_.logs_peis(base)) return;
   Base& watch = bases_[base];
   Message* const came = match(watch.down, net);
   if (came == nullptr) {

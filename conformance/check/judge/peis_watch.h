@@ -10,9 +10,6 @@
 
 namespace rubric::check {
 
-/// Returns whether the log has the messages from `node` to PEIS and back.
-bool logs_peis(const Run& run, std::uint16_t node);
-
 class PeisWatch {
  public:
   PeisWatch(Context& context, std::size_t devices);

@@ -1,6 +1,5 @@
 #include "conformance/check/judge/sent.h"
 
-#include "conformance/check/judge/peis_watch.h"
 #include "conformance/machine/route.h"
 
 namespace rubric::check {
@@ -84,7 +83,7 @@ void Originals::called(std::uint16_t node, const Observation& seen, const machin
   const std::uint16_t sink = base ? device.partner : node;
   const bool line = device.whole || (sink != kNobody && context_.device(sink).shows_line());
   bool shown = device.role == Role::kMote || line;
-  if (base && !here) shown = logs_peis(context_.run, node);
+  if (base && !here) shown = context_.logs_peis(node);
   const Link down = base ? Link::kSerial : Link::kRadio;  // To its motes.
   const Link up = base ? Link::kPeis : device.role == Role::kSink ? Link::kSerial : Link::kRadio;
   const bool to_mote = here && call.dest.devid != machine::kNullDevid;

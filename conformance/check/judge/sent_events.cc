@@ -2,7 +2,6 @@
 // timeout.
 #include <algorithm>
 
-#include "conformance/check/judge/peis_watch.h"
 #include "conformance/check/judge/sent.h"
 #include "conformance/machine/transport.h"
 
@@ -97,7 +96,7 @@ void Originals::told(std::uint16_t node, const Observation& seen, const machine:
     // many sent at once the first are forgotten here before their timeout.
     const Device& device = context_.device(node);
     const bool elsewhere = !context_.has_lines(node) ||
-                           (device.role == Role::kBaseStation && !logs_peis(context_.run, node));
+                           (device.role == Role::kBaseStation && !context_.logs_peis(node));
     const bool forgotten = ring.size() + 1 >= ring.kMost && awaits(node, ring.oldest(0), now);
     bool before = context_.begun_before(node, now, patience_us(node));
     const bool came = heard_ack(node, ack.seq_num, [](const Net&) { return true; });

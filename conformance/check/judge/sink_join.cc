@@ -423,7 +423,6 @@ std::uint16_t SinkJoins::reply(std::uint16_t sink_device, const Observation& see
 void SinkJoins::refuse_reply(SinkWatch& sink, PairWatch& watch, const Observation& seen,
                              const Reply& reply) {
   const std::uint16_t am = seen.frame.dest;
-  const std::int64_t now = seen.place.time_us;
   const SinkHypothesis& h = watch.set.back();
   // The request that it answers may lie before the capture, by the timer of the mote.
   const std::int64_t before_us =
@@ -439,7 +438,7 @@ void SinkJoins::refuse_reply(SinkWatch& sink, PairWatch& watch, const Observatio
                                "join_reply with number " + number(reply.seq_num) + "."});
   }
   ReqId rule = "J3-ONCE"_rule;
-  Severity severity = context_.without_mote(am, since, now);
+  Severity severity = context_.without_mote(am, since, seen.place.time_us);
   if (!watch.asked && !context_.options.start_cold) severity = Severity::kInconclusive;
   const auto asks_this = [&](const auto& entry) {
     return entry.first != am && entry.second.asked && entry.second.request_seq == reply.seq_num;
@@ -448,9 +447,7 @@ void SinkJoins::refuse_reply(SinkWatch& sink, PairWatch& watch, const Observatio
       reply.seq_num != watch.request_seq) {
     rule = "J3-DEST"_rule;  // Two motes may use the same number, and one request have escaped.
     said.text = "join_reply to AM address " + number(am) +
-                " with the number of another mote's "
-                "request (" +
-                number(reply.seq_num) + ").";
+                " with the number of another mote's request (" + number(reply.seq_num) + ").";
     said.expected = "A reply to the AM address that asked.";
   } else if (h.member && watch.asked && reply.seq_num == watch.request_seq &&
              (watch.request_listed || watch.answered_seq != reply.seq_num ||
@@ -477,8 +474,10 @@ void SinkJoins::refuse_reply(SinkWatch& sink, PairWatch& watch, const Observatio
   SinkHypothesis next = h;
   // Its stored request is unknown now, unless this was the answer to it, with a wrong number.
   next.unknown = rule != "J3-SEQ"_rule || severity != Severity::kFail;
-  if (!next.unknown) next.pending = Admission{am, watch.request_seq, {}};
-  if (!next.unknown) unanswered_[am].open = false;
+  if (!next.unknown) {
+    next.pending = Admission{am, watch.request_seq, {}};
+    unanswered_[am].open = false;
+  }
   next.owed = 0;
   next.owes_older = false;
   watch.set.assign(1, next);
