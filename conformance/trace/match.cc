@@ -44,11 +44,11 @@ namespace {
 
 constexpr std::size_t kOtherMessage = 1000;
 
-/// One attempt; its bindings count only if all of it matches.
+/// One attempt; what it binds counts only if all of it matches.
 class Matcher {
  public:
-  Matcher(const Concrete& seen, const Bindings& bindings)
-      : seen_(seen), bindings_(bindings), covered_(seen.leaves.size(), false) {}
+  Matcher(const Concrete& seen, const Bindings& before)
+      : seen_(seen), before_(before), covered_(seen.leaves.size(), false) {}
 
   void message(const Message& pattern) {
     if (pattern.name != "*" && pattern.name != seen_.name) {
@@ -88,10 +88,8 @@ class Matcher {
     if (expected != seen) differ("bytes", expected, seen.empty() ? "none" : seen);
   }
 
-  Match take(Bindings& bindings) {
-    if (match_.differences.empty()) bindings = std::move(bindings_);
-    return std::move(match_);
-  }
+  Match take() { return std::move(match_); }
+  const Bindings& bound() const { return bound_; }
 
  private:
   static std::string print_of(const Message& message) {
@@ -112,7 +110,7 @@ class Matcher {
     const auto add = [&](const Value& value) {
       const bool range = value.is(Value::Kind::kRange) && !value.text.empty();
       if (!range && !value.is(Value::Kind::kVariable)) return;
-      const Value* bound = bindings_.find(value.text);
+      const Value* bound = find(value.text);
       text += bound ? " ($" + value.text + " = " + value_text(*bound) + ")"
                     : " ($" + value.text + " is not bound)";
     };
@@ -155,7 +153,7 @@ class Matcher {
   }
 
   bool is(const Value& want, const Leaf& leaf) {
-    if (want.is(Value::Kind::kVariable)) return bound(want, leaf.value());
+    if (want.is(Value::Kind::kVariable)) return binds(want, leaf.value());
     if (want.is(Value::Kind::kRange) && !want.text.empty()) return near(want, leaf);
     return same(want, leaf) != want.negated;
   }
@@ -163,7 +161,7 @@ class Matcher {
   // Matches a range that is relative to a variable; if that is unbound it never matches. Behind a
   // field's greatest number comes its least: clocks go round (decision 119).
   bool near(const Value& want, const Leaf& leaf) const {
-    const Value* base = bindings_.find(want.text);
+    const Value* base = find(want.text);
     if (!base || !base->is(Value::Kind::kNumber)) return false;
     if (leaf.domain.kind != Domain::Kind::kNumber) return want.negated;
     const std::int64_t size = leaf.domain.max - leaf.domain.min + 1;
@@ -171,11 +169,16 @@ class Matcher {
     return ((beyond + size) % size <= want.max - want.number) != want.negated;
   }
 
+  const Value* find(const std::string& name) const {
+    const Value* const value = bound_.find(name);
+    return value ? value : before_.find(name);
+  }
+
   // The first use binds.
-  bool bound(const Value& want, Value seen) {
-    if (const Value* value = bindings_.find(want.text)) return equal(*value, seen) != want.negated;
+  bool binds(const Value& want, Value seen) {
+    if (const Value* value = find(want.text)) return equal(*value, seen) != want.negated;
     if (want.negated) return false;
-    bindings_.set(want.text, std::move(seen));
+    bound_.set(want.text, std::move(seen));
     return true;
   }
 
@@ -215,7 +218,7 @@ class Matcher {
   }
 
   bool is(const Value& want, const Part& part) {
-    if (want.is(Value::Kind::kVariable)) return bound(want, plain(part));
+    if (want.is(Value::Kind::kVariable)) return binds(want, plain(part));
     return same(want, part) != want.negated;
   }
 
@@ -256,7 +259,8 @@ class Matcher {
   }
 
   const Concrete& seen_;
-  Bindings bindings_;
+  const Bindings& before_;
+  Bindings bound_;  // By this attempt: a case may have bound any number before.
   std::vector<bool> covered_;
   Match match_;
 };
@@ -288,26 +292,42 @@ namespace {
 
 // `am(type payload)` matches the frame as such, whatever it decodes to.
 Match match_message(const Message& pattern, const Line* line, const Concrete& seen,
-                    Bindings& bindings) {
+                    const Bindings& before, Bindings* bindings) {
   if (pattern.name == kFrameName && seen.name != kFrameName && seen.frame) {
-    return match_message(pattern, line, decode_raw(*seen.frame), bindings);
+    return match_message(pattern, line, decode_raw(*seen.frame), before, bindings);
   }
-  Matcher matcher(seen, bindings);
+  Matcher matcher(seen, before);
   matcher.message(pattern);
   if (line && line->am) matcher.am(*line->am);
   if (line && line->bytes) matcher.bytes(*line->bytes);
-  return matcher.take(bindings);
+  Match match = matcher.take();
+  if (!match || !bindings) return match;
+  for (const auto& [name, value] : matcher.bound().all()) bindings->set(name, value);
+  return match;
+}
+
+Match match_line(const Line& line, const Concrete& seen, const Bindings& before,
+                 Bindings* bindings) {
+  if (is_fault(line.op)) return match_message(opened(line.message), &line, seen, before, bindings);
+  return match_message(line.message, &line, seen, before, bindings);
 }
 
 }  // namespace
 
 Match match(const Line& line, const Concrete& seen, Bindings& bindings) {
-  if (is_fault(line.op)) return match_message(opened(line.message), &line, seen, bindings);
-  return match_message(line.message, &line, seen, bindings);
+  return match_line(line, seen, bindings, &bindings);
+}
+
+Match compare(const Line& line, const Concrete& seen, const Bindings& bindings) {
+  return match_line(line, seen, bindings, nullptr);
+}
+
+bool may_match(const Message& pattern, const Concrete& seen) {
+  return pattern.name == "*" || pattern.name == seen.name || pattern.name == kFrameName;
 }
 
 Match match(const Message& pattern, const Concrete& seen, Bindings& bindings) {
-  return match_message(pattern, nullptr, seen, bindings);
+  return match_message(pattern, nullptr, seen, bindings, &bindings);
 }
 
 Value substituted(const Value& value, const Bindings& bindings, Place place) {

@@ -35,6 +35,10 @@ struct Match {
 /// and link. Binds unbound variables only if everything matches; `!$q` and `$q+1..$q+2` never match
 /// while q is unbound.
 Match match(const Line& line, const Concrete& seen, Bindings& bindings);
+/// The same, and binds nothing.
+Match compare(const Line& line, const Concrete& seen, const Bindings& bindings);
+/// Returns whether a message that the pattern names can be this one: compare() takes far longer.
+bool may_match(const Message& pattern, const Concrete& seen);
 /// Compares the message alone.
 Match match(const Message& pattern, const Concrete& seen, Bindings& bindings);
 /// Opens a message for faults of a link, which check only the fields that they name.

@@ -1,8 +1,9 @@
 // Makes one call of the C library fail, for tests (faults_test.py). Preloaded with LD_PRELOAD.
 //
 // FAIL_CALL names the call: open, read, write, rename, fsync, connect, accept or malloc; FAIL_AT
-// says which one after the begin of main(), counted from 1; FAIL_ERRNO is what it fails with. How
-// many there were goes to FAIL_COUNT, a file, when the program exits or calls _exit.
+// says which one after the begin of main(), counted from 1; FAIL_ERRNO is what it fails with, and
+// with 0 the program is killed there. How many there were goes to FAIL_COUNT, a file, when the
+// program exits or calls _exit.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/socket.h>
@@ -11,6 +12,7 @@
 
 #include <atomic>
 #include <cerrno>
+#include <csignal>
 #include <cstdarg>
 #include <cstdio>
 #include <cstdlib>
@@ -27,6 +29,7 @@ int fail_errno = 0;
 // Returns whether this call has to fail.
 bool fails(const char* name) {
   if (!armed || std::strcmp(name, call) != 0 || ++count != fail_at) return false;
+  if (fail_errno == 0) std::raise(SIGKILL);
   errno = fail_errno;
   return true;
 }

@@ -3,7 +3,7 @@
 
 No command may hang or crash, end with 0 without having done all, or lose a file or what it
 confirmed.
-Usage: faults_test.py RUBRIC FAILING_CALLS
+Usage: faults_test.py RUBRIC FAILING_CALLS [PLACES]
 """
 import errno
 import os
@@ -21,10 +21,11 @@ import testing
 from testing import FIRMWARE, RUBRIC
 
 SHIM = sys.argv.pop(1)
+PLACES = int(sys.argv.pop(1)) if sys.argv[1:] and sys.argv[1].isdigit() else 40  # Of malloc.
 CAPTURE = FIRMWARE / "a_join_data.pcapng"
+CASES = "conformance/cases/j2.rtr"
 OLD = b"an old file\n" * 100
 PATIENCE_S = 30
-PLACES = 40  # Of malloc: spread over all of them.
 # Every session writes @, which is there before. @lines are JSON lines, @other is a capture of
 # another protocol, which decode finds out by itself.
 SESSIONS = (
@@ -34,11 +35,10 @@ SESSIONS = (
     ("check", "--each", FIRMWARE, "--shard", "1/4", "--jobs", "1", "--out", "@"),
     ("generate", "--count", "20", "-o", "@"),
     ("simulate", "--seconds", "1", "--out-pcapng", "@"),
-    ("test", "--target", "machine", "--cases", "j2.*", "--format", "junit", "--out", "@"),
-    ("test", "--target", "machine:answers_members", "--cases", "j2.*", "--write-expect", "@"),
-    ("chart", "j4.accept", "--out", "@"),
-    ("diff", "--target", "machine", "--target", "machine:answers_members", "--cases", "j2.*",
-     "--out", "@"),
+    ("test", CASES, "--target", "machine", "--format", "junit", "--out", "@"),
+    ("test", CASES, "--target", "machine:answers_members", "--write-expect", "@"),
+    ("chart", CASES, "--out", "@"),
+    ("diff", CASES, "--target", "machine", "--target", "machine:answers_members", "--out", "@"),
     ("encode", "@lines", "--format", "pcapng", "--out", "@"),
     # By one thread, so that the same call fails each time.
     ("explore", "--motes", "1", "--calls", "1", "--loss", "--flaw", "no_fail", "--threads", "1",
@@ -52,6 +52,14 @@ FAILURES = {"open": errno.EMFILE, "read": errno.EIO, "write": errno.ENOSPC,
 def timeless(text):
     """A report without the time that its run took, and without rates."""
     return re.sub(rb' time="[0-9.]+"|[0-9.]+ (s:|million)', b"", text)
+
+
+def fnv(content):
+    """The check sum of report.files: FNV-1a with 64 bits."""
+    out = 0xcbf29ce484222325
+    for byte in content:
+        out = (out ^ byte) * 0x100000001b3 & (1 << 64) - 1
+    return out
 
 
 class Forwarder:
@@ -118,7 +126,7 @@ class Faults(testing.Folder):
         good = self.run_with(words, call, 0)
         self.assertIn(good.returncode, (0, 1, 3), (words, good.stderr))
         all_of_them = int(self.count.read_text())
-        step = max(1, all_of_them // PLACES) if call == "malloc" else 1
+        step = max(1, all_of_them // PLACES) if call == "malloc" else 1  # Spread over all of them.
         return range(1, all_of_them + 1, step), good, timeless(self.old.read_bytes())
 
     def test_files(self):
@@ -153,6 +161,15 @@ class Faults(testing.Folder):
         for call in FAILURES:
             self.assertGreater(tried[call], 5, call)
 
+    def test_a_kill_leaves_old_or_whole_files(self):
+        for words in SESSIONS:
+            for call in ("open", "write", "rename", "fsync"):
+                numbers, _, whole = self.places(words, call)
+                for number in numbers:
+                    self.old.write_bytes(OLD)
+                    self.assertEqual(self.run_with(words, call, number, 0).returncode, -9, words)
+                    self.assertIn(timeless(self.old.read_bytes()), (OLD, whole), (words, number))
+
     def test_reports_are_old_or_new(self):
         report = self.folder / "report"
 
@@ -174,6 +191,47 @@ class Faults(testing.Folder):
                 if tree() == old:
                     self.assertNotEqual(done.returncode, good.returncode, (call, number))
         self.assertNotEqual(old, new)
+
+    def test_a_report_that_a_kill_mixed_tells_so(self):
+        """By its check sums."""
+        report = self.folder / "report"
+
+        def tree():
+            return {str(path.relative_to(report)): path.read_bytes()
+                    for path in report.rglob("*") if path.is_file()
+                    and not path.relative_to(report).parts[0].startswith(".report.")}
+
+        def sums_are_right(files):
+            lines = files["report.files"].decode().splitlines()[1:]
+            return all(fnv(files.get(path, b"")) == int(given, 16)
+                       for given, path in (line.split(" ", 1) for line in lines))
+
+        def begin_with_an_old_one():
+            shutil.rmtree(report)
+            testing.run("test", CASES, "--target", "machine:answers_members", "--report", report)
+
+        words = ("test", CASES, "--target", "machine", "--report", report)
+        testing.run(*words)
+        new = tree()
+        begin_with_an_old_one()
+        mixed = 0
+        for number in self.places(words, "rename")[0]:
+            begin_with_an_old_one()
+            old = tree()
+            self.assertTrue(sums_are_right(old))
+            self.assertEqual(self.run_with(words, "rename", number, 0).returncode, -9)
+            now = tree()
+            # What one of them has alone is listed by none before it is there, or until it is gone.
+            replaced = {now[path] != old[path] for path in {*old} & {*new} - {"report.files"}
+                        if timeless(old[path]) != timeless(new[path])}
+            if len(replaced) < 2:
+                continue
+            mixed += 1
+            self.assertFalse(sums_are_right(now), number)
+            self.assertTrue(list(report.glob(".report.*")), number)
+            testing.run(*words)
+            self.assertTrue(sums_are_right(tree()), number)
+        self.assertGreater(mixed, 2)
 
     def test_what_a_line_sends(self):
         words = ("decode", Forwarder(self, True).name, "--format", "jsonl", "--time", "none",

@@ -182,6 +182,11 @@ class Linear(Folder):
         for name, line in COUNTED.items():
             self.is_linear(name, lambda n: HEAD + "case c\n" + "".join(map(line, range(n))))
 
+    def test_variables_that_outputs_bind(self):
+        self.is_linear("variables", lambda n: HEAD + "case c\n" + "".join(
+            f"3 {REQUEST.format(i & 0xFFFF)}\n0..2 sA > rA join_reply(seq_num=$q{i} ...)\n"
+            for i in range(n)), (("test", "--target", "machine"),))
+
     def test_many_nodes_and_links_with_lines(self):
         """In a log; a case has few, and the runner and a chart look for each among all."""
         self.is_linear("nodes", lambda n: HEAD + "".join(

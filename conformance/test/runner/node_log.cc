@@ -207,6 +207,7 @@ const Output* NodeLog::take(const trace::Line& line, const Window& window,
     Seen& seen = seen_[i];
     if (seen.taken || !is_about(line, seen) || !window.holds(outputs[i].time)) continue;
     if (const auto next = next_.find(seen.order); next != next_.end() && i < next->second) continue;
+    if (!trace::may_match(line.message, seen.message)) continue;
     if (!trace::match(line, seen.message, bindings)) continue;
     seen.taken = &line;
     next_[seen.order] = i + 1;
@@ -229,8 +230,8 @@ const Output* NodeLog::forbidden(const trace::Line& line, const Window& window,
   for (std::size_t i = begin; i < end; ++i) {
     const Seen& seen = seen_[i];
     if (seen.taken || !is_about(line, seen) || !window.holds(outputs[i].time)) continue;
-    trace::Bindings copy = bindings;
-    if (trace::match(line, seen.message, copy)) return &outputs[i];
+    if (!trace::may_match(line.message, seen.message)) continue;
+    if (trace::compare(line, seen.message, bindings)) return &outputs[i];
   }
   return nullptr;
 }
@@ -243,13 +244,13 @@ NearestMiss NodeLog::nearest_miss(const trace::Line& line, const Window& window,
   for (std::size_t i = 0; i < seen_.size(); ++i) {
     const Seen& seen = seen_[i];
     if (seen.taken || !is_about(line, seen) || outputs[i].time > latest) continue;
-    trace::Bindings copy = bindings;
-    const trace::Match match = trace::match(line, seen.message, copy);
     const bool in_time = window.holds(outputs[i].time);
     const bool other = seen.message.message.name != line.message.name;
     if (in_time && other && best == std::numeric_limits<std::size_t>::max()) {
       miss.text = fmt::format("it emitted no {} there", line.message.name);
     }
+    if (!trace::may_match(line.message, seen.message)) continue;
+    const trace::Match match = trace::compare(line, seen.message, bindings);
     if (match ? false : other || !in_time) continue;
     const std::size_t distance = match.distance() * 2 + (in_time ? 0 : 1);
     if (distance >= best) continue;

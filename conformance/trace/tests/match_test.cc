@@ -110,6 +110,25 @@ TEST(Match, BindsOnFirstUseOnlyWhereAllMatches) {
             "seq_num: expected $q ($q = 8), seen 7");
 }
 
+TEST(Match, ComparesWithoutBinding) {
+  const Concrete seen = decode(frame(14, "0007 01 0043 01"), LinkKind::kRadio);
+  Bindings bindings;
+  bindings.set("q", Value::of(7));
+  Line line{.op = Op::kEmits, .message = message("join_request(seq_num=$q mote_type=$t ...)")};
+  EXPECT_TRUE(compare(line, seen, bindings));
+  EXPECT_EQ(bindings.find("t"), nullptr);
+  line.message = message("join_request(seq_num=$q mote_type=!$q ...)");
+  EXPECT_TRUE(compare(line, seen, bindings));
+  line.message = message("join_request(mote_type=$t seq_num=!$t ...)");
+  EXPECT_TRUE(compare(line, seen, bindings));  // Within a line a variable is bound, too.
+  line.message = message("join_request(mote_type=$t seq_num=$t ...)");
+  EXPECT_EQ(compare(line, seen, bindings).differences.size(), 1U);
+  for (const char* able : {"*", "join_request(seq_num=8 ...)", "am(type=14 ...)"}) {
+    EXPECT_TRUE(may_match(message(able), seen)) << able;
+  }
+  EXPECT_FALSE(may_match(message("join_reply"), seen));
+}
+
 TEST(Match, NumbersGoRound) {
   const auto seen = [](const char* seq_num) {
     return decode(frame(14, std::string(seq_num) + " 01 0043 01"), LinkKind::kRadio);
