@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "codec/lines/time.h"
@@ -15,7 +16,7 @@ struct TimedPacket {
   std::vector<std::uint8_t> bytes;
 };
 
-/// All functions throw Broken if the line breaks or carries nonsense; it is closed
+/// All functions throw Broken if the line breaks or a forwarder carries nonsense; it is closed
 /// then, and open() opens it anew.
 class PacketLine {
  public:
@@ -27,6 +28,8 @@ class PacketLine {
   virtual void send(const std::vector<std::uint8_t>& packet, SteadyTime deadline) = 0;
   /// Returns the next packet; nothing if the time is over first.
   virtual std::optional<TimedPacket> receive(SteadyTime deadline) = 0;
+  /// Returns what the line may have lost or doubled since the last call; empty: nothing.
+  virtual std::string take_damage() { return {}; }
   /// Returns the descriptor on which more comes while it is open, for poll(); -1 if there is none.
   virtual int fd() const { return -1; }
 };

@@ -74,6 +74,7 @@ HostLinkOptions SerialLine::link_options() { return {.ack_wait = kAckWait, .trie
 void SerialLine::begin(SteadyTime) {
   link_.reset(steady_clock::now());
   packets_.clear();
+  damage_.clear();
   synchronised_ = false;
 }
 
@@ -105,19 +106,17 @@ std::optional<TimedPacket> SerialLine::receive(SteadyTime deadline) {
 }
 
 void SerialLine::take(Bytes bytes) {
-  std::optional<std::string> malformed;
   auto frame = [&](const Packet& packet) {
-    if (malformed) return;
     if (packet.error.fault == Fault::kNone) {
       synchronised_ = true;
     } else if (synchronised_) {
-      malformed = packet.error.fault == Fault::kCrc ? "wrong CRC" : "wrong size";
+      damage_ = fmt::format("a malformed frame came (wrong {})",
+                            packet.error.fault == Fault::kCrc ? "CRC" : "size");
     }
     if (!brings_packet(packet)) return;
     packets_.push_back({steady_clock::now(), {packet.bytes.begin(), packet.bytes.end()}});
   };
   link_.take(bytes, steady_clock::now(), frame);
-  if (malformed) broken("a malformed frame on the serial line: " + *malformed);
   flush(steady_clock::now() + kAckWait);
 }
 

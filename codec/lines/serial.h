@@ -5,6 +5,7 @@
 #include <deque>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "codec/lines/host_link.h"
 #include "codec/lines/stream.h"
@@ -28,6 +29,8 @@ class SerialLine : public StreamLine {
 
   void send(const std::vector<std::uint8_t>& packet, SteadyTime deadline) override;
   std::optional<TimedPacket> receive(SteadyTime deadline) override;
+  /// A malformed frame is noise, and a packet that was sent again may have arrived twice.
+  std::string take_damage() override { return std::exchange(damage_, {}); }
 
  private:
   static HostLinkOptions link_options();
@@ -38,9 +41,11 @@ class SerialLine : public StreamLine {
   std::optional<bool> confirmed_;  // The last packet was confirmed; nothing: not yet.
   HostLink link_{link_options(), [this](const HostLink::Outcome& outcome) {
                    if (outcome.packet + 1 == link_.taken()) confirmed_ = outcome.confirmed;
+                   if (outcome.tries > 1) damage_ = "a packet was confirmed late, and sent again";
                  }};
   std::deque<TimedPacket> packets_;
-  bool synchronised_ = false;  // Input before the first good frame is noise.
+  bool synchronised_ = false;  // Input before the first good frame is none of a packet's.
+  std::string damage_;
 };
 
 }  // namespace rubric::lines

@@ -57,6 +57,13 @@ std::string github_annotations(const SuiteRun& run, std::size_t max) {
                                 escaped(implementation_name(run, i), true),
                                 escaped(outside_headline(run.implementations[i]), false)));
   }
+  for (std::size_t i = 0; i < run.implementations.size(); ++i) {
+    const std::string missing = incomplete_as_a_whole(run, run.implementations[i]);
+    if (missing.empty()) continue;
+    lines.push_back(fmt::format("::error title={} is incomplete::{}\n",
+                                escaped(implementation_name(run, i), true),
+                                escaped(missing, false)));
+  }
   for (const StaleExpectation& one : run.stale) {
     const std::size_t colon = one.place.rfind(':');  // "file:line".
     lines.push_back(fmt::format("::error file={},line={},title=expectation that is not true::{}\n",

@@ -31,6 +31,7 @@ Json implementation(const SuiteRun& run, std::size_t index) {
   Json out = implementation_json(one);
   out["label"] = implementation_name(run, index);
   out["outside"] = outside_headline(one);
+  out["incomplete"] = one.dishonest.empty() ? incomplete(run, one) : std::string();
   out["stderr"] = one.stderr_text;
   out["rules"] = {{"all", totals.all},
                   {"kept", totals.kept},

@@ -21,10 +21,12 @@ std::string class_name_of(std::string name) {
   return "rubric." + name;
 }
 
-JunitCase error(const std::string& class_name, const char* name, const std::string& message) {
+// A case about the run as a whole.
+JunitCase whole(const std::string& class_name, const char* name, Outcome outcome, const char* type,
+                const std::string& message) {
   JunitCase out{.class_name = class_name, .name = name};
-  out.outcome = Outcome::kError;
-  out.type = "error";
+  out.outcome = outcome;
+  out.type = type;
   out.message = message;
   return out;
 }
@@ -46,6 +48,7 @@ JunitCase testcase(const std::string& class_name, const CaseRun& one) {
     out.outcome = Outcome::kSkipped;
     out.message = fmt::format("{}: {}", runner::verdict_text(one.result.verdict),
                               one.expected_reason.empty() ? headline(one) : one.expected_reason);
+    if (!one.result.failures.empty()) out.output = in_full(one);
   } else if (one.result.verdict == CaseVerdict::kWeak) {
     out.output = in_full(one);
   }
@@ -58,7 +61,7 @@ JunitCase outside(const std::string& class_name, const ImplementationRun& run) {
   for (const OutsideFault& one : run.outside) text += outside_text(one) + '\n' + one.stderr_text;
   JunitCase out{.class_name = class_name, .name = "outside_of_cases"};
   if (broke_outside(run)) {
-    out = error(class_name, "outside_of_cases", outside_headline(run));
+    out = whole(class_name, "outside_of_cases", Outcome::kError, "error", outside_headline(run));
     out.body = text;
   } else {
     out.output = text;
@@ -93,10 +96,14 @@ std::string junit_report(const SuiteRun& run) {
     suite.seconds = report::junit_seconds(one.wall_ms);
     wall_ms += one.wall_ms;
     if (!one.dishonest.empty()) {
-      suite.cases.push_back(error(class_name, "honesty", one.dishonest));
+      suite.cases.push_back(whole(class_name, "honesty", Outcome::kError, "error", one.dishonest));
     }
     for (const CaseRun& each : one.cases) suite.cases.push_back(testcase(class_name, each));
     if (!one.outside.empty()) suite.cases.push_back(outside(class_name, one));
+    if (const std::string missing = incomplete_as_a_whole(run, one); !missing.empty()) {
+      suite.cases.push_back(
+          whole(class_name, "completeness", Outcome::kFailure, "incomplete", missing));
+    }
   }
   if (!run.stale.empty()) suites.push_back(stale_suite(run));
   return report::junit_document(suites, "rubric test", report::junit_seconds(wall_ms));

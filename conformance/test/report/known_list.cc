@@ -117,7 +117,8 @@ class KnownList {
  private:
   void take(const ImplementationRun& implementation, const CaseRun& one) {
     const std::string target = run_.implementations.size() > 1 ? implementation.target : "";
-    if (one.owed || (one.undecided() && !one.expected_reason.empty())) {
+    const bool lacks = one.owed && !one.result.damaged;  // What was damaged is to be run again.
+    if (lacks || (one.undecided() && !one.expected_reason.empty())) {
       std::vector<std::string>& cases =
           undecided_[{what_was_missing(one.result.reason), one.expected_reason, target}];
       if (cases.empty() || cases.back() != one.name) cases.push_back(one.name);

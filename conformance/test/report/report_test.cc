@@ -10,6 +10,7 @@
 #include "conformance/test/report/json.h"
 #include "conformance/test/report/junit.h"
 #include "conformance/test/report/tap.h"
+#include "conformance/test/report/text/text.h"
 #include "conformance/test/report/words.h"
 
 namespace rubric::suite {
@@ -165,6 +166,44 @@ TEST(Report, WhatHappensOutsideOfCasesIsShown) {
                              "stderr": "boo <1>\n"},
                             {"when": "before a.pass", "text": "wrote 'x'", "broke": true,
                              "stderr": ""}])"));
+}
+
+TEST(Report, ARunThatIsIncompleteAsAWholeIsNotASuccess) {
+  SuiteRun run = every_kind();
+  run.stale.clear();
+  run.implementations[0].cases = {one("a.skip", CaseVerdict::kSkip)};
+  EXPECT_EQ(exit_code(run), 3);
+  EXPECT_EQ(tap_report(run),
+            "TAP version 13\n1..2\nok 1 - tiny 0.3: a.skip # SKIP skip: no base station\n"
+            "not ok 2 - tiny 0.3: incomplete: nothing was decided\n");
+  EXPECT_EQ(github_annotations(run), "::error title=tiny 0.3 is incomplete::nothing was decided\n");
+  const std::string xml = junit_report(run);
+  EXPECT_NE(xml.find("tests=\"2\" failures=\"1\" errors=\"0\" skipped=\"1\""), std::string::npos)
+      << xml;
+  EXPECT_NE(xml.find("<failure type=\"incomplete\" message=\"nothing was decided\"/>"),
+            std::string::npos)
+      << xml;
+
+  run.implementations[0].cases = {one("a.skip", CaseVerdict::kSkip)};
+  run.implementations[0].cases[0].owed = true;  // Its own point says so.
+  EXPECT_EQ(tap_report(run).find("incomplete"), std::string::npos);
+  EXPECT_EQ(junit_report(run).find("nothing was decided"), std::string::npos);
+}
+
+TEST(Report, WhatAnInconclusiveCaseBreaksIsShown) {
+  SuiteRun run = every_kind();
+  run.stale.clear();
+  CaseRun half = one("a.half", CaseVerdict::kWeak);
+  half.result.verdict = CaseVerdict::kInconclusive;
+  half.result.unseen = {"peis"};
+  run.implementations[0].cases = {one("a.pass", CaseVerdict::kPass), half};
+  EXPECT_NE(tap_report(run).find("J4-SEQ (SHOULD)"), std::string::npos);
+  EXPECT_NE(junit_report(run).find("J4-SEQ (SHOULD)"), std::string::npos);
+  const TextOptions options;
+  EXPECT_EQ(case_text(run.implementations[0].cases[1], options).substr(0, 20),
+            "inconclusive a.half ");
+  EXPECT_NE(story_text(run, run.implementations[0], options).find("INCONCLUSIVE a.half: J4-SEQ"),
+            std::string::npos);
 }
 
 TEST(Report, AtMostTenAnnotations) {

@@ -10,8 +10,6 @@
 namespace rubric::suite {
 namespace {
 
-using runner::CaseVerdict;
-
 // Makes text readable as UTF-8, whatever an implementation wrote: other bytes and controls as \x1f.
 std::string clean(std::string_view text) {
   std::string out;
@@ -79,7 +77,7 @@ std::string tap_report(const SuiteRun& run) {
       const bool failed = one.unexpected() || one.expectation == Expectation::kAsExpected;
       points += fmt::format("{} {} - {}: {}{}\n", failed ? "not ok" : "ok", ++number, plain(name),
                             plain(case_name(one)), directive(one));
-      if (failed || one.result.verdict == CaseVerdict::kWeak) points += block(one);
+      if (failed || !one.result.failures.empty()) points += block(one);
     }
     const ImplementationRun& implementation = run.implementations[i];
     const std::string outside = plain(outside_headline(implementation));
@@ -88,6 +86,11 @@ std::string tap_report(const SuiteRun& run) {
           fmt::format("not ok {} - {}: outside of cases: {}\n", ++number, plain(name), outside);
     } else if (!outside.empty()) {
       points += fmt::format("# {}: {}\n", plain(name), outside);
+    }
+    const std::string missing = incomplete_as_a_whole(run, implementation);
+    if (!missing.empty()) {
+      points +=
+          fmt::format("not ok {} - {}: incomplete: {}\n", ++number, plain(name), plain(missing));
     }
   }
   for (const StaleExpectation& one : run.stale) {

@@ -122,6 +122,14 @@ std::string in_full(const CaseRun& one) {
   return out;
 }
 
+std::string incomplete_as_a_whole(const SuiteRun& run, const ImplementationRun& implementation) {
+  const auto is_owed = [](const CaseRun& one) { return one.owed; };
+  if (!implementation.dishonest.empty() || std::ranges::any_of(implementation.cases, is_owed)) {
+    return {};
+  }
+  return incomplete(run, implementation);
+}
+
 bool broke_outside(const ImplementationRun& implementation) {
   const auto& all = implementation.outside;
   return std::any_of(all.begin(), all.end(), [](const OutsideFault& one) { return one.broke; });

@@ -1,6 +1,7 @@
 #include "conformance/test/runner/blame.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <span>
@@ -101,6 +102,28 @@ void conclude(CaseResult& result, const std::vector<NodeLog>& nodes, trace::Plac
       result.failures.push_back(std::move(failure));
     }
   }
+}
+
+std::vector<std::string> Failure::rules() const {
+  std::vector<std::string> all = requirements;
+  all.insert(all.end(), suspected.begin(), suspected.end());
+  return all;
+}
+
+std::string explain(const CaseResult& result, const std::string& file_name) {
+  std::string out;
+  for (const Failure& failure : result.failures) {
+    out += fmt::format("{}:{}: {}: ", file_name, failure.place.line, result.name);
+    out += failure.requirements.empty() ? "no rule"
+                                        : fmt::format("{}", fmt::join(failure.requirements, " "));
+    if (!failure.suspected.empty()) {
+      out += fmt::format(", suspected {}", fmt::join(failure.suspected, " "));
+    }
+    out += failure.weak ? " (weak)\n" : "\n";
+    if (!failure.expected.empty()) out += fmt::format("  expected  {}\n", failure.expected);
+    out += fmt::format("  but       {}\n", failure.text);
+  }
+  return out;
 }
 
 }  // namespace rubric::runner

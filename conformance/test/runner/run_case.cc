@@ -85,6 +85,7 @@ class Run {
     } catch (const std::exception& error) {
       set_error(result, place_, error.what());
     }
+    mind_damage(result);
     conclude(result, nodes_, case_.place);
     result.unseen = std::move(unseen_);
     result.length = now_;
@@ -467,6 +468,21 @@ class Run {
         });
   }
 
+  // What was lost or doubled on the way can cause all that is wrong, and hide what is.
+  void mind_damage(CaseResult& result) {
+    const auto crashed = [](const Failure& failure) { return failure.crash; };
+    if (result.verdict > CaseVerdict::kFail) return;
+    if (std::any_of(result.failures.begin(), result.failures.end(), crashed)) return;
+    for (NodeLog& node : nodes_) {
+      const std::string damage = node.target().take_damage();
+      if (damage.empty()) continue;
+      result.damaged = unseen_.empty() || !result.failures.empty();
+      result.failures.clear();
+      result.verdict = CaseVerdict::kInconclusive;
+      result.reason = "its line may have lost or doubled something: " + damage;
+    }
+  }
+
   void set_error(CaseResult& result, trace::Place place, const char* why) {
     Failure failure{.place = place};
     failure.time = failure.from = failure.to = failure.broken_at = now_;
@@ -571,28 +587,6 @@ std::string_view verdict_text(CaseVerdict verdict) {
 
 CaseResult run_case(const trace::File& file, const trace::Case& one, const TargetFactory& make) {
   return Run(file, one, make).finish();
-}
-
-std::vector<std::string> Failure::rules() const {
-  std::vector<std::string> all = requirements;
-  all.insert(all.end(), suspected.begin(), suspected.end());
-  return all;
-}
-
-std::string explain(const CaseResult& result, const std::string& file_name) {
-  std::string out;
-  for (const Failure& failure : result.failures) {
-    out += fmt::format("{}:{}: {}: ", file_name, failure.place.line, result.name);
-    out += failure.requirements.empty() ? "no rule"
-                                        : fmt::format("{}", fmt::join(failure.requirements, " "));
-    if (!failure.suspected.empty()) {
-      out += fmt::format(", suspected {}", fmt::join(failure.suspected, " "));
-    }
-    out += failure.weak ? " (weak)\n" : "\n";
-    if (!failure.expected.empty()) out += fmt::format("  expected  {}\n", failure.expected);
-    out += fmt::format("  but       {}\n", failure.text);
-  }
-  return out;
 }
 
 }  // namespace rubric::runner

@@ -24,7 +24,7 @@
 
 namespace rubric::runner {
 
-/// Up to kError in the order of gravity. kInconclusive: nothing was broken, but the target does not
+/// Up to kError in the order of gravity. kInconclusive: no MUST was broken, but the target does not
 /// show everything; kError: the case itself makes no sense here, or the target did not start;
 /// kSkip: the target reports that it cannot do what the case needs.
 enum class CaseVerdict : std::uint8_t { kPass, kWeak, kInconclusive, kFail, kError, kSkip };
@@ -61,6 +61,7 @@ struct CaseResult {
   std::string reason;            ///< Why it is inconclusive, skipped or an error.
   std::set<std::string> unseen;  ///< Links that it looks at and the target does not show.
   bool not_built = false;        ///< Skipped: the target cannot be what the case is for.
+  bool damaged = false;          ///< Inconclusive: what its line lost or doubled may decide it.
   Ticks length = 0;              ///< Virtual time that passed.
   trace::Case log;               ///< Everything that was given and came back.
 };

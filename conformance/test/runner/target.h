@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "codec/lines/broken.h"
@@ -88,6 +89,9 @@ class Target {
   /// Returns when the last event was given, if that took time: between these ticks. Outputs before
   /// it have earlier times; the others do not.
   virtual std::optional<Window> given() const { return std::nullopt; }
+  /// Returns why inputs or outputs since reset may have been lost or doubled on their way; empty:
+  /// they were not. Cleared by this.
+  virtual std::string take_damage() { return {}; }
 };
 
 }  // namespace rubric::runner

@@ -97,6 +97,7 @@ void LineTarget::reset(const machine::Config& config) {
   tolerance_of_this_host();  // Measures now, not in the middle of the case.
   if (app_) app_->poll();
   outputs_.clear();
+  line_.line->take_damage();
   clock_.start();
   now_ = 0;
 }
@@ -276,7 +277,7 @@ LineAttachment::LineAttachment(std::unique_ptr<lines::PacketLine> line, LineNode
 
 const Identity& LineAttachment::identity() {
   if (!app_) {
-    line_.open();
+    if (!line_.opened) line_.open();  // Whether it is still there is asked by cases alone.
     return line_.node.identity;
   }
   Identity& ours = line_.node.identity;

@@ -103,6 +103,7 @@ class LineTarget : public runner::Target {
   /// its answer on the serial line.
   runner::Tolerance tolerance() const override;
   std::optional<runner::Window> given() const override { return given_; }
+  std::string take_damage() override { return line_.line->take_damage(); }
 
  private:
   machine::Role role() const { return line_.node.identity.roles.front(); }

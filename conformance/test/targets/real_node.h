@@ -212,6 +212,10 @@ class MoteEnd : public lines::PacketLine {
   void send(const std::vector<std::uint8_t>& packet, lines::SteadyTime deadline) override {
     std::uint8_t out[600];
     const auto size = write_serial_packet(Bytes(packet.data(), packet.size()), out);
+    if (frames_damaged > 0) {
+      --frames_damaged;
+      out[*size / 2] ^= 1;
+    }
     stream_.write(Bytes(out, *size), deadline);
   }
   std::optional<lines::TimedPacket> receive(lines::SteadyTime deadline) override {
@@ -226,14 +230,17 @@ class MoteEnd : public lines::PacketLine {
       }
       std::uint8_t out[16];
       const auto size = write_serial_ack(content[1], out);
-      stream_.write(Bytes(out, *size), deadline + lines::Milliseconds(1000));
+      const bool confirms = unconfirmed == 0 || --unconfirmed > 0;
+      if (confirms) stream_.write(Bytes(out, *size), deadline + lines::Milliseconds(1000));
       return lines::TimedPacket{std::chrono::steady_clock::now(),
                                 {content.data() + 2, content.data() + content.size()}};
     }
     return std::nullopt;
   }
 
-  std::atomic<int> deaf_to{0};  ///< So many packets that come next.
+  std::atomic<int> deaf_to{0};         ///< So many packets that come next.
+  std::atomic<int> unconfirmed{0};     ///< The packet of this number from now on, from 1.
+  std::atomic<int> frames_damaged{0};  ///< So many that it sends next.
 
  private:
   std::function<lines::ByteStream(lines::SteadyTime)> connect_;

@@ -214,6 +214,30 @@ TEST(RealTime, SerialLineThroughTcp) {
   expect(CaseVerdict::kPass, *attachment, "sink.ack");
 }
 
+// What is lost or doubled on the way is no node's fault, and no node's merit.
+TEST(RealTime, ADamagedSerialLineDecidesNothing) {
+  const std::uint16_t port = free_port();
+  std::unique_ptr<MoteEnd> end = mote_at(port);
+  MoteEnd& mote = *end;
+  const RealNode sink(std::move(end), config_of(machine::Role::kSink, 3));
+  const auto attachment = attach(fmt::format("serial:tcp:127.0.0.1:{}", port), kOptions);
+  expect(CaseVerdict::kPass, *attachment, "sink.ack");
+  mote.frames_damaged = 1;  // Its ack.
+  runner::CaseResult result = run(*attachment, "sink.ack");
+  EXPECT_EQ(result.verdict, CaseVerdict::kInconclusive);
+  EXPECT_EQ(result.reason,
+            "its line may have lost or doubled something: a malformed frame came (wrong CRC)");
+  EXPECT_TRUE(result.damaged);
+  mote.unconfirmed = 3;  // The message, after the islands.
+  result = run(*attachment, "sink.ack");
+  EXPECT_EQ(result.verdict, CaseVerdict::kInconclusive);
+  EXPECT_EQ(result.reason,
+            "its line may have lost or doubled something: a packet was confirmed late, and sent "
+            "again");
+  EXPECT_TRUE(result.damaged);
+  expect(CaseVerdict::kPass, *attachment, "sink.ack");
+}
+
 TEST(RealTime, SerialDevice) {
   const Terminal terminal;
   const RealNode sink(terminal.mote_end(), config_of(machine::Role::kSink, 3));
@@ -321,6 +345,10 @@ TEST(RealTime, ForwardersThatBreak) {
     EXPECT_GE(result.verdict, CaseVerdict::kFail);
     EXPECT_LE(result.verdict, CaseVerdict::kError);
     EXPECT_EQ(result.reason, one.reason);
+    // Who has gone is still known.
+    if (result.verdict == CaseVerdict::kFail) {
+      EXPECT_FALSE(attachment->identity().name.empty());
+    }
   }
 }
 

@@ -18,7 +18,7 @@ function showRun() {
     h('dl', { class: 'facts' }, [
       ['pass', 'Everything that the case asks for was seen.'],
       ['weak', 'Only rules that say SHOULD were broken.'],
-      ['inconclusive', 'Nothing was broken, but not all of it could be seen.'],
+      ['inconclusive', 'No MUST was broken, but not all of it could be seen.'],
       ['fail', 'A rule was broken; or the implementation died, hung, or made no sense.'],
       ['error', 'The implementation did not start, or the case makes no sense.'],
       ['skip', 'The implementation says that it cannot do what the case needs.'],

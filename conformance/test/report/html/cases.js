@@ -76,6 +76,7 @@ function tile(implementation) {
     h('div', {}, implementation.dishonest
       ? [h('span', { class: verdictClass('error') }, 'refused'), ' ', implementation.dishonest]
       : words.length ? words : 'nothing was run'),
+    implementation.incomplete && h('div', {}, `incomplete: ${implementation.incomplete}`),
     implementation.outside && h('div', {}, `outside of the cases: ${implementation.outside}`),
     total > 0 && h('div', { class: 'soft' }, ruleWords(implementation.rules)),
     h('div', { class: 'soft' },

@@ -207,7 +207,7 @@ class Story {
       if (one.result.verdict == CaseVerdict::kError || one.result.verdict == CaseVerdict::kFail ||
           one.expectation != Expectation::kNone) {
         tell(one);
-      } else if (one.result.verdict == CaseVerdict::kWeak && !options_.quiet) {
+      } else if (!one.result.failures.empty() && !options_.quiet) {  // Of SHOULD rules alone.
         if (options_.verbose)
           in_full(one);
         else
@@ -331,7 +331,7 @@ class Story {
 std::string case_text(const CaseRun& one, const TextOptions& options) {
   if (options.quiet && !one.unexpected()) return {};
   // One sentence for all of them will do.
-  if (!options.verbose && is_beyond_reach(one)) return {};
+  if (!options.verbose && is_beyond_reach(one) && one.result.failures.empty()) return {};
   std::string verdict(runner::verdict_text(one.result.verdict));
   const std::string_view style = style_of(one.result.verdict, one.unexpected());
   std::string rest;
