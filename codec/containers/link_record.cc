@@ -102,6 +102,8 @@ void decode_radio(Bytes record, std::uint16_t link_type, bool cut, Packet& packe
     packet.error = read_tap(record, &header, &fcs_type, packet.radio);
     if (packet.error.fault != Fault::kNone) {
       packet.radio = RadioFacts{};
+      // No frame is to be had of it.
+      if (cut || packet.error.fault == Fault::kUnsupported) packet.framing = Framing::kBare;
       return;
     }
     packet.offset_bytes += header;

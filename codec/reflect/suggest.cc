@@ -31,8 +31,9 @@ std::string_view nearest(std::string_view word, const std::vector<std::string>& 
   std::string_view best;
   int best_distance = 0;
   for (const std::string& name : names) {
-    // A beginning counts as near: "dec" means "decode".
-    const bool begins = word.size() >= 2 && name.starts_with(word);
+    // A beginning counts as near: "dec" means "decode", "output" means "out".
+    const bool begins = (word.size() >= 2 && name.starts_with(word)) ||
+                        (name.size() >= 3 && word.starts_with(name));
     const int distance = begins ? 1 : edit_distance(word, name);
     if (best.empty() || distance < best_distance) {
       best = name;

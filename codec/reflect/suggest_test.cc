@@ -19,6 +19,9 @@ TEST(Suggest, knows_what_was_meant) {
   EXPECT_EQ(nearest("dec", names), "decode");
   EXPECT_EQ(nearest("stat", names), "stats");
   EXPECT_EQ(nearest("conver", names), "convert");
+  EXPECT_EQ(nearest("output", {"decode", "out"}), "out");
+  EXPECT_EQ(nearest("an", {"a", "b"}), "a");
+  EXPECT_EQ(nearest("android", {"an"}), "");
   EXPECT_EQ(nearest("frobnicate", names), "");
   EXPECT_EQ(nearest("x", {}), "");
   EXPECT_EQ(nearest("xncode", {"encode", "uncode"}), "encode");  // The first of two.

@@ -318,8 +318,15 @@ int Command::complain(const std::string& what, const std::string& excerpt) const
 }
 
 int Command::complain_about_option(const std::string& bare) const {
-  return complain(
-      fmt::format("unknown option {}{}", bare, reflect::did_you_mean(bare, option_names(*app_))));
+  // Without the hyphens, which would make short names look alike.
+  std::vector<std::string> names;
+  for (const std::string& name : option_names(*app_)) {
+    if (name.starts_with("--")) names.push_back(name.substr(2));
+  }
+  const std::size_t begin = std::min(bare.find_first_not_of('-'), bare.size());
+  const std::string_view meant = reflect::nearest(std::string_view(bare).substr(begin), names);
+  return complain(fmt::format("unknown option {}{}", bare,
+                              meant.empty() ? "" : fmt::format(" (did you mean '--{}'?)", meant)));
 }
 
 int Command::complain_about_extras() const {

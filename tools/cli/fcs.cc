@@ -13,6 +13,7 @@ constexpr std::int32_t kCorrelationMax = 115;
 constexpr std::uint64_t kAlikeMin = 8;
 constexpr std::uint64_t kAlikeToSay = 3;
 constexpr std::uint64_t kFcsBytes = 2;
+constexpr std::uint64_t kExtraMin = 2;
 
 bool has_fcs(const Packet& packet) {
   return packet.link_type == kLinkRadioFcs && packet.fcs != kAbsent &&
@@ -21,6 +22,10 @@ bool has_fcs(const Packet& packet) {
 
 bool lacks_fcs_alone(const Packet& packet) {
   return packet.cut_by_capture() && packet.dropped_bytes == kFcsBytes && !packet.bytes.empty();
+}
+
+bool is_whole_without_fcs(const Packet& packet) {
+  return packet.link_type == kLinkRadioNoFcs && packet.error.fault == Fault::kNone;
 }
 
 }  // namespace
@@ -34,20 +39,31 @@ void FcsGuess::take(const Packet& packet) {
   if (packet.link_type == kLinkRadioFcs && packet.cut_by_capture()) {
     ++(lacks_fcs_alone(packet) ? left_out_ : cut_);
   }
+  if (is_whole_without_fcs(packet)) take_without(packet);
   if (!has_fcs(packet)) return;
   if (packet.error.fault == Fault::kNone) {
     ++sound_;
     return;
   }
-  // A frame that is sent again shows nothing new.
-  const Bytes bytes = packet.bytes;
-  if (std::equal(bytes.begin(), bytes.end(), last_.begin(), last_.end())) return;
-  last_.assign(bytes.begin(), bytes.end());
+  if (is_again(packet.bytes)) return;
   const std::int32_t correlation = packet.fcs >> 8 & 0x7F;
   const bool alike = (packet.fcs & kCrcBit) != 0 && correlation >= kCorrelationMin &&
                      correlation <= kCorrelationMax;
   ++(alike ? alike_ : other_);
 }
+
+// A frame that is sent again shows nothing new.
+bool FcsGuess::is_again(Bytes bytes) {
+  if (std::equal(bytes.begin(), bytes.end(), last_.begin(), last_.end())) return true;
+  last_.assign(bytes.begin(), bytes.end());
+  return false;
+}
+
+void FcsGuess::take_without(const Packet& packet) {
+  if (!is_again(packet.bytes)) ++(ends_with_fcs(packet.bytes) ? extra_ : without_);
+}
+
+bool FcsGuess::is_extra() const { return extra_ >= kExtraMin && without_ * 50 <= extra_; }
 
 bool FcsGuess::is_cc24xx() const {
   return alike_ >= kAlikeMin && sound_ * 50 <= alike_ && other_ * 9 <= alike_;
@@ -64,6 +80,10 @@ bool FcsGuess::is_left_out() const {
 }
 
 void reread_fcs(FcsKind kind, Packet& packet) {
+  if (kind == FcsKind::kExtra && is_whole_without_fcs(packet)) {
+    packet.link_type = kLinkRadioFcs;
+    return decode_radio_record(packet.bytes, kLinkRadioFcs, packet);
+  }
   if (packet.link_type != kLinkRadioFcs) return;
   const bool may_lack_it = kind == FcsKind::kNone || kind == FcsKind::kLeftOut;
   if (may_lack_it && lacks_fcs_alone(packet)) {

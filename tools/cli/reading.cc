@@ -126,6 +126,10 @@ void choose_fcs(const InputOptions& options, Bytes beginning, Reading& reading) 
   } else if (guess.is_left_out()) {
     reading.fcs = FcsKind::kLeftOut;
     reading.remark = "its radio frames were captured without their FCS";
+  } else if (guess.is_extra()) {
+    reading.fcs = FcsKind::kExtra;
+    reading.remark =
+        "its radio frames end with their FCS, though its link type 230 says that they have none";
   } else if (guess.may_be_cc24xx()) {
     reading.remark =
         "no FCS of its radio frames fits; if a TI chip put RSSI and link quality there: --fcs "

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <utility>
 
 #include "codec/frame_generator/routes.h"
@@ -26,6 +27,7 @@ namespace {
 
 constexpr std::string_view kNone = "none";
 constexpr std::string_view kLinkFrames = "ieee802154";
+constexpr std::string_view kHeaders = "tinyos";  // With the frame of a serial line.
 
 /// A spec that was read; it is kept until the program ends.
 struct ReadSpec {
@@ -57,17 +59,10 @@ void add_requirements(rubricc::Model& model) {
   }
 }
 
-void require_sound(rubricc::Model& model, rubricc::Diagnostics& diagnostics,
-                   rubricc::CheckFor what) {
-  rubricc::check_model(model, diagnostics, what);
+void require_sound(rubricc::Model& model, rubricc::Diagnostics& diagnostics) {
+  rubricc::check_model(model, diagnostics, rubricc::CheckFor::kRunTime);
   text::print_harmless(stderr, diagnostics.print_notes() + diagnostics.print());
-  if (diagnostics.empty()) return;
-  if (what == rubricc::CheckFor::kDissector) {
-    text::print(stderr,
-                "rubric: a dissector takes less of a spec than 'rubric decode --spec' reads; "
-                "spec/README.md says what\n");
-  }
-  exit_with(kExitInput);
+  if (!diagnostics.empty()) exit_with(kExitInput);
 }
 
 bool names_file(std::string_view spec) { return spec.ends_with(".ksy"); }
@@ -85,7 +80,7 @@ const reflect::Protocol& read_spec(const std::string& spec) {
   } else {
     rubricc::load_shipped_spec(spec, shipped_specs(), read.model, diagnostics);
   }
-  require_sound(read.model, diagnostics, rubricc::CheckFor::kRunTime);
+  require_sound(read.model, diagnostics);
   read.tables = std::make_unique<rubricc::BuiltTables>(read.model);
   read.built = read.tables->of(read.model.specs.back()->id);
   return *read.built.protocol;
@@ -246,6 +241,25 @@ const reflect::RouteTable& routes_of(const reflect::Protocol& protocol) {
   return *generate::routes_of(protocol);
 }
 
+namespace {
+
+/// Returns which of the file and what it imports have the ids of specs that ship: a dissector has
+/// them instead.
+std::set<std::string> copies_in(const std::string& file) {
+  rubricc::Model model;
+  rubricc::Diagnostics diagnostics;
+  diagnostics.pardon_code();
+  rubricc::load_specs({file}, model, diagnostics, shipped_specs());
+  std::set<std::string> out;
+  for (const auto& one : model.specs) {
+    const bool ships = one->file.starts_with("<shipped>");
+    if (!ships && shipped_specs().contains(one->id)) out.insert(one->id);
+  }
+  return out;
+}
+
+}  // namespace
+
 std::string dissector_with(const std::string& spec) {
   // Wireshark has beacons and commands of its own.
   const auto dissected = [](const auto& name) { return name != kNone && name != kLinkFrames; };
@@ -254,9 +268,7 @@ std::string dissector_with(const std::string& spec) {
   add_requirements(model);
   std::vector<std::string> names;
   for (const auto& [name, text] : shipped_specs()) {
-    if (!dissected(name)) continue;
-    rubricc::load_shipped_spec(name, shipped_specs(), model, diagnostics);
-    names.push_back(name);
+    if (dissected(name)) names.push_back(name);
   }
   const bool shipped = std::find(names.begin(), names.end(), spec) != names.end();
   if (!shipped && !names_file(spec)) {
@@ -264,11 +276,18 @@ std::string dissector_with(const std::string& spec) {
                      fmt::format("expected a .ksy file or one of {}; given '{}'{}",
                                  fmt::join(names, ", "), spec, reflect::did_you_mean(spec, names)));
   }
+  // What ships and imports one of the copies may not fit that: then the file is alone.
+  const std::set<std::string> copies = shipped ? std::set<std::string>() : copies_in(spec);
+  for (const std::string& name : names) {
+    const bool headers = name == kHeaders && !copies.contains(name);
+    if (!copies.empty() && !headers) continue;
+    rubricc::load_shipped_spec(name, shipped_specs(), model, diagnostics);
+  }
   if (!shipped) {
     rubricc::load_specs({spec}, model, diagnostics, shipped_specs());
     rubricc::add_am_frames(shipped_specs(), model, diagnostics);
   }
-  require_sound(model, diagnostics, rubricc::CheckFor::kDissector);
+  require_sound(model, diagnostics);
   const auto chosen = std::find_if(model.specs.begin(), model.specs.end(),
                                    [&](const auto& one) { return one->id == spec; });
   const rubricc::Spec& usual = shipped ? **chosen : *model.specs.back();

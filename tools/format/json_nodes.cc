@@ -278,8 +278,8 @@ void JsonPlan::index_addresses() {
     first_address_ = std::min(first_address_, address(plan));
     last = std::max(last, address(plan));
   }
-  // The tables of a built-in protocol are one object file's constants, so the distances are small;
-  // those of a spec that is read at run time may lie anywhere.
+  // The tables of a protocol lie side by side, so the distances are small; those of two that are
+  // read as one may lie anywhere.
   constexpr std::uintptr_t kSlotsMax = 1U << 16;
   const std::uintptr_t slots = (last - first_address_) / kStep + 1;
   if (slots > kSlotsMax) {

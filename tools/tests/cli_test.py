@@ -60,6 +60,9 @@ class ExitCodes(ProgramTest):
         cases = {
             ("decoed",): "did you mean 'decode'?",
             ("decode", "--filtr", "x"): "did you mean '--filter'?",
+            ("convert", "x", "--output", "y"): "did you mean '--out'?",
+            ("decode", "-filter", "x"): "did you mean '--filter'?",
+            ("check", "--spec", "x"): "unknown option --spec\n",
             ("decode", "--format", "xml"): "--format",
             ("decode", "--count", "-1"): "--count: expected a number of 1 or more, given '-1'",
             ("decode", "--count", "0"): "--count: expected a number of 1 or more, given '0'",

@@ -12,6 +12,7 @@ import struct
 import subprocess
 import unittest
 
+from packets import fcs
 from testing import RUBRIC, Folder, ProgramTest, run, some
 
 CAPTURES = pathlib.Path("spec/captures")
@@ -30,6 +31,33 @@ def rubric(*args, stdin=b""):
     return done.returncode, done.stdout, done.stderr.decode()
 
 
+class Contents(Folder):
+    """Bytes that a plain Kaitai file says a field always has."""
+
+    def decoded(self, text, stdin, command="decode", *more):
+        file = self.write("magics.ksy", text)
+        return run(command, "--spec", file, "--as", "magics", *more, input=stdin, text=True)
+
+    def test_three_bytes_are_a_number(self):
+        for order in ("be", "le"):
+            text = ("meta: {id: magics, endian: le, bit-endian: " + order + "}\nseq:\n"
+                    "  - {id: high, type: b8}\n  - {id: magic, contents: [1, 0, 0x41]}\n"
+                    "  - {id: last, type: u1}\n")
+            found = self.decoded(text, "07 01 00 41 09\n07 41 00 01 09\n", "decode", "--format",
+                                 "jsonl")
+            whole, wrong = (json.loads(one) for one in found.stdout.splitlines())
+            self.assertEqual(whole["fields"], {"high": 7, "magic": 0x010041, "last": 9})
+            self.assertEqual((wrong["error"]["fault"], wrong["error"]["offset"]), ("unexpected", 1))
+            made = self.decoded(text, '{"high": 7, "magic": 65601, "last": 9}', "encode",
+                                "--carrier", "none", "--format", "hex")
+            self.assertEqual(made.stdout, "07 01 00 41 09\n", made.stderr)
+
+    def test_they_begin_at_a_byte(self):
+        text = ("meta: {id: magics}\nseq:\n  - {id: half, type: b4}\n"
+                "  - {id: magic, contents: [1, 2, 3]}\n")
+        self.assertIn("the bits 'half' end within a byte", self.decoded(text, "00").stderr)
+
+
 class Fcs(Folder):
     """Link type 195 with what TI's CC24xx chips write in place of the FCS."""
 
@@ -39,12 +67,12 @@ class Fcs(Folder):
         self.assertGreater(len(frames), 50)
         return [bytes.fromhex(frame["raw"]) for frame in frames]
 
-    def pcap(self, frames, missing=0):
+    def pcap(self, frames, missing=0, link_type=195):
         """Each frame was longer by so many bytes than what was captured."""
         file = self.folder / "sniffed.pcap"
         records = (struct.pack("<4I", i, 0, len(frame), len(frame) + missing) + frame
                    for i, frame in enumerate(frames))
-        header = struct.pack("<I2H4I", 0xA1B2C3D4, 2, 4, 0, 0, 65535, 195)
+        header = struct.pack("<I2H4I", 0xA1B2C3D4, 2, 4, 0, 0, 65535, link_type)
         file.write_bytes(header + b"".join(records))
         return file
 
@@ -89,6 +117,26 @@ class Fcs(Folder):
             out = rubric("decode", "--format", "jsonl", self.pcap(frames, missing))[1]
             self.assertEqual({json.loads(line)["error"]["fault"] for line in out.splitlines()},
                              {"cut"})
+
+    def test_frames_that_end_with_an_fcs_of_which_nothing_is_said(self):
+        frames = self.radio_frames()
+        ends = [frame + fcs(frame) for frame in frames]
+        file = self.pcap(ends, link_type=230)
+        code, out, err = rubric("decode", "--format", "jsonl", file)
+        shown = [json.loads(line) for line in out.splitlines()]
+        self.assertEqual([bytes.fromhex(one["raw"]) for one in shown], frames)
+        self.assertEqual((code, {one["stale"] for one in shown}), (0, {""}))
+        self.assertEqual(err.count("end with their FCS, though its link type 230"), 1)
+        again = self.folder / "again.pcap"
+        rubric("convert", "-o", again, file)
+        self.assertEqual(again.read_bytes()[24:], file.read_bytes()[24:])
+        self.assertEqual(again.read_bytes()[20], 195)
+        ends[3] = frames[3]  # By chance a frame without one may end so, but not most of them.
+        for few in (ends[:5], ends[:1], frames):
+            _, out, err = rubric("decode", "--format", "jsonl", self.pcap(few, link_type=230))
+            self.assertEqual([bytes.fromhex(json.loads(line)["raw"]) for line in out.splitlines()],
+                             few)
+            self.assertNotIn("230", err)
 
     def test_frames_whose_fcs_is_none(self):
         """As of today's Cooja: nothing says that it is missing."""

@@ -17,8 +17,10 @@ import unittest
 from extcap_testing import EXTCAP, FORWARDER, PACKET, SERIAL, Base, decoded, run
 from live_testing import Forwarder
 from serial_testing import PATIENCE_S, Pty, hdlc, read_until, wait_for
+from specs_test import FLOATING, UNPROVED
 from testing import ROOT, RUBRIC
 
+KAITAI = ROOT / "spec/kaitai_check"
 CONFIG = pathlib.Path(".config/wireshark/extcap/rubric-extcap")
 
 
@@ -190,7 +192,8 @@ class Install(Base):
         wanted = run(RUBRIC, "decode", capture, "--spec", spec, "--color", "never", "--width",
                      "900")
         return ([line.split("\t") for line in done.stdout.splitlines()],
-                [re.split(r" \* | !! ", line) for line in wanted.stdout.splitlines()])
+                [re.split(r" \* | !! ", line) for line in wanted.stdout.splitlines()
+                 if not line.startswith("        ")])
 
     def packet(self, payload):
         return b"\0\xff\xff\0\2" + bytes([len(payload)]) + b"\x22\x64" + payload
@@ -224,9 +227,16 @@ class Install(Base):
         for (info, note), line in zip(found, wanted):
             self.assertEqual(info, re.sub(" +", " ", line[0][line[0].index("told"):]))
             self.assertEqual(note, line[1] if len(line) > 1 else "")
+        # Of other encodings the bytes are shown, up to a terminator of two bytes at an even place.
         spec.write_text(text.replace("strz, size: 6, encoding: ASCII",
                                      "strz, encoding: UTF-16LE"), encoding="utf-8")
-        self.assertIn("rubric --spec reads text", self.install("--spec", spec, code=66))
+        self.install("--spec", spec)
+        found, wanted = self.told(spec, [self.packet(b"ABCDx\0\0y\0\0zz"),
+                                         self.packet(b"ABCDx\0y\0\0")])
+        self.assertEqual(found[0][0], 'told tag="ABCD" name=780000790000 rest="zz"')
+        self.assertIn('rest="zz"', wanted[0][0])
+        self.assertIn("truncated at 17: name needs 7 bytes, the bytes end at 17", found[1][0])
+        self.assertIn("truncated at 17: name needs 7 bytes, the bytes end at 17", wanted[1][-1])
 
     def test_bits_and_terminated_text_of_a_file(self):
         fields = ("{id: high, type: b3, enum: modes}", "{id: there, type: b1}",
@@ -263,6 +273,46 @@ class Install(Base):
                         "--format", "csv", "--fields", "high,wide,last")
             rows = table.stdout.replace("\r", "").splitlines()[1:]
             self.assertEqual(done.stdout.splitlines(), rows)
+
+    def test_what_varies_in_size(self):
+        """Generated frames of plain Kaitai files: fields, faults and where notes are."""
+        for name, text in (("plain", KAITAI / "plain.ksy"), ("lists", KAITAI / "lists.ksy"),
+                           ("unproved", UNPROVED), ("floating", FLOATING)):
+            text = text if isinstance(text, str) else text.read_text(encoding="utf-8")
+            text = re.sub("UTF-16LE|ISO-8859-15|windows-1252", "ASCII", text)
+            spec = self.folder / f"{name}.ksy"
+            spec.write_text(text, encoding="utf-8")
+            made = run(RUBRIC, "generate", "--spec", spec, "--message", name, "--count", "1000",
+                       "--valid", "0.5", "--seed", "7", "--format", "hex").stdout
+            spec.write_text(text.replace("seq:", "-am-type: 100\nseq:", 1), encoding="utf-8")
+            self.install("--spec", spec)
+            packets = [self.packet(bytes.fromhex(line)) for line in made.splitlines()
+                       if len(line) < 3 * 114]
+            found, wanted = self.told(spec, packets)
+            self.assertGreater(len(found), 250)
+            for (info, said), line in zip(found, wanted, strict=True):
+                parts = [re.sub(r" \+\d+ stale$", "", one) for one in line]
+                shown, _, fault = info.partition(" !! ")
+                fields = parts[0][parts[0].index(name):]
+                self.assertEqual(*(re.sub(" +", " ", one).rstrip() for one in (shown, fields)))
+                faults = [one for one in parts[1:]
+                          if re.match("(truncated|trailing|out_of_range|unexpected) at", one)]
+                self.assertEqual([fault] if fault else [], faults)
+                notes = [one.split(":")[0] for one in parts[1:] if one not in faults]
+                self.assertEqual(re.findall(r"\w+ at \d+(?=:)", said), notes)
+            self.assertIn("!!", "".join(info for info, _ in found))
+
+    def test_a_copy_of_what_ships_beside_the_file(self):
+        """It is read in place of the one that ships, whether they differ or not."""
+        wire = ROOT / "spec/wire"
+        for added in ("", "# mine\n"):
+            for name in ("tinyos", "oscilloscope"):
+                text = (wire / f"{name}.ksy").read_text(encoding="utf-8") + added
+                (self.folder / f"{name}.ksy").write_text(text, encoding="utf-8")
+            spec = self.folder / "oscilloscope.ksy"
+            self.install("--spec", spec)
+            found, _ = self.told(spec, [b"\0\xff\xff\0\2\x1c\x22\x93" + bytes(28)])
+            self.assertIn("oscilloscope_msg version=0", found[0][0])
 
     def test_a_protocol_that_does_not_ship(self):
         said = self.install("--spec", "prinft", code=64)

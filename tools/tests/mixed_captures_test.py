@@ -203,6 +203,12 @@ class Mixed(Captures):
         code, out, err = rubric("decode", alien)
         self.assertEqual((code, out, err.count("\n")), (NO_INPUT, "", 1))
         self.assertIn("2000 of 2000 packets", err)
+        wide = struct.pack("<BBH", 0, 0, 12) + tlv(0, b"\2")
+        alien.write_bytes(pcap(283, [wide + with_fcs(0) + b"??"] * 20 + [tap(0)]))
+        code, out, err = rubric("decode", alien)
+        self.assertEqual((code, out.count("\n")), (0, 1))
+        self.assertIn("link type 283 (TAP) with an FCS of 32 bits is not read: 20 of 21 packets "
+                      "are left out\n", err)
 
     def test_link_types_by_option(self):
         user = self.path / "user.pcap"

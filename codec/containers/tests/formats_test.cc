@@ -326,11 +326,23 @@ TEST(WireRadioFcs, WhatARecordCanBe) {
     const std::string record = from_hex(row.record);
     Packet packet;
     decode_radio_record(view(record), row.link_type, packet);
-    EXPECT_EQ(packet.framing, Framing::kRadio) << row.name;
+    const bool unsupported = row.error.fault == Fault::kUnsupported;
+    EXPECT_EQ(packet.framing, unsupported ? Framing::kBare : Framing::kRadio) << row.name;
     EXPECT_EQ(packet.offset_bytes, row.offset) << row.name;
     EXPECT_EQ(to_hex(packet.bytes), to_hex(view(from_hex(row.bytes)))) << row.name;
     EXPECT_EQ(packet.fcs, row.fcs) << row.name;
     EXPECT_EQ(packet.error, row.error) << row.name;
+  }
+}
+
+TEST(WireRadioTap, NoFrameIsMadeOfAHeaderThatTheCaptureCut) {
+  const std::string record = from_hex("00 00 0c 00  00 00 01 00 01 00 00 00  02 00 01 31 a4");
+  Packet packet;
+  for (std::size_t kept = 1; kept < record.size(); ++kept) {
+    decode_record(view(record).first(kept), record.size(), 283, "WIRE-PCAP"_rule, packet);
+    EXPECT_EQ(packet.error.fault, Fault::kCut) << kept;
+    EXPECT_EQ(packet.framing, kept < 12 ? Framing::kBare : Framing::kRadio) << kept;
+    EXPECT_EQ(packet.bytes.size(), kept < 12 ? kept : kept - 12) << kept;
   }
 }
 

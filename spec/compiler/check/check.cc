@@ -7,7 +7,7 @@ namespace rubricc {
 
 void check_model(Model& model, Diagnostics& diagnostics, CheckFor what) {
   const bool for_code = what == CheckFor::kCode;
-  Check check{model, diagnostics, for_code, what == CheckFor::kRunTime, {}};
+  Check check{model, diagnostics, !for_code, {}};
   if (!for_code) diagnostics.pardon_code();
   check_names(check);
   check_order(check);

@@ -20,8 +20,7 @@ constexpr std::uint32_t kUnbounded = std::numeric_limits<std::uint32_t>::max();
 struct Check {
   Model& model;
   Diagnostics& diagnostics;
-  bool for_code;                  // Else names and rules are free.
-  bool at_run_time;               // For tables in memory: what these alone can hold.
+  bool at_run_time;               // For tables in memory: names and rules are free, sizes vary.
   std::set<const void*> open;     // Fields and types whose size is not known.
   std::vector<Type*> order = {};  // All types, what a type contains before it.
 

@@ -19,12 +19,11 @@ void check_bytes(Check& check, Field& field) {
               "type, size, size-eos or contents was expected");
 }
 
-/// Text and bits are read at run time and by dissectors, which know terminators of one byte.
+/// Refuses for code what tables in memory and dissectors alone read.
 void check_plain(Check& check, const Field& field) {
   if (check.at_run_time) return;
   const SourcePlace& place = place_of(field.places, "type", field.place);
-  const bool ends = field.extent == ExtentKind::kTerminated;
-  if (field.text && (check.for_code || (ends && field.text->unit > 1))) {
+  if (field.text) {
     check.error(place, fmt::format("text or a terminator in {}", quote(field.id)),
                 "bytes were expected; rubric --spec reads text");
   }
@@ -32,7 +31,10 @@ void check_plain(Check& check, const Field& field) {
     check.error(place_of(field.places, "repeat", field.place), "repeat: until",
                 "a count was expected, so that the size is known before; rubric --spec reads it");
   }
-  if (field.bit_width > 0 && check.for_code) {
+  if (field.bit_width > 0 && field.places.contains("contents")) {
+    check.error(field.places.at("contents"), "contents of 3 bytes",
+                "1, 2 or 4 bytes were expected; rubric --spec reads 3");
+  } else if (field.bit_width > 0) {
     check.error(place, "bits outside a mask",
                 "-mask: 8 or -mask: 16 was expected at the type; rubric --spec reads bits");
   }

@@ -34,11 +34,8 @@ class Layout {
     if (!type_.params.empty()) check_params();
     for (std::size_t i = 0; i < type_.fields.size(); ++i) {
       Field& field = *type_.fields[i];
-      if (field.bit_width > 0) {
-        lay_bits(field);
-      } else {
-        end_bits(i);
-      }
+      if (field.bit_width == 0 || field.places.contains("contents")) end_bits(i);
+      if (field.bit_width > 0) lay_bits(field);
       place(field, i);
     }
     end_bits(type_.fields.size());

@@ -22,7 +22,7 @@ class Requirements {
   void check_type(Type& type) {
     known(type.requirement, place_of(type.places, "-requirement", type.place));
     const bool needed =
-        check_.for_code && !type.is_mask && type.carrier.empty() && type.id != type.spec->id;
+        !check_.at_run_time && !type.is_mask && type.carrier.empty() && type.id != type.spec->id;
     if (needed && !type.places.contains("-requirement") && !type.refused_keys) {
       check_.error(type.place, fmt::format("type {} without requirement", quote(type.id)),
                    "-requirement: was expected");
@@ -37,7 +37,7 @@ class Requirements {
   void known(std::string& id, const SourcePlace& place) {
     if (id.empty()) return;
     if (ids_.empty() || std::binary_search(ids_.begin(), ids_.end(), id)) return;
-    if (!check_.for_code) return id.clear();
+    if (check_.at_run_time) return id.clear();
     check_.error(place, fmt::format("unknown requirement {}", quote(id)), suggestion(id, ids_));
   }
 

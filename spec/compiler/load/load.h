@@ -47,11 +47,10 @@ void load_case_text(const std::string& file, const std::string& text, Model& mod
                     Diagnostics& diagnostics);
 
 /// Resolves names, expressions, sizes and offsets, and reports everything that breaks a rule of
-/// the profile. Emitters may run only when nothing was reported. kRunTime is for tables in memory:
-/// a type needs no requirement, one that is not in the catalogue counts as none, and names and
-/// sizes need not suit C++. kDissector: the same, but only
-/// what a dissector can show.
-enum class CheckFor { kCode, kDissector, kRunTime };
+/// the profile. Emitters may run only when nothing was reported. kRunTime is for tables in memory
+/// and dissectors: a type needs no requirement, one that is not in the catalogue counts as none,
+/// and names and sizes need not suit C++.
+enum class CheckFor { kCode, kRunTime };
 void check_model(Model& model, Diagnostics& diagnostics, CheckFor what = CheckFor::kCode);
 
 }  // namespace rubricc

@@ -269,9 +269,9 @@ void read_contents(const YamlInput& input, const YamlMap& map, Field& field) {
       return;
     }
   }
-  if (bytes.size() != 1 && bytes.size() != 2 && bytes.size() != 4) {
+  if (bytes.empty() || bytes.size() > 4) {
     input.error(entry->value, fmt::format("contents of {} bytes", bytes.size()),
-                "1, 2 or 4 bytes are read as one number");
+                "1 to 4 bytes are read as one number");
     return;
   }
   for (const char* other : {"type", "size", "size-eos", "valid", "enum", "repeat"}) {
@@ -281,6 +281,7 @@ void read_contents(const YamlInput& input, const YamlMap& map, Field& field) {
   }
   field.kind = ValueKind::kUint;
   field.width_bytes = static_cast<int>(bytes.size());
+  if (bytes.size() == 3) field.bit_width = 24;  // No number of whole bytes has that size.
   std::int64_t value = 0;
   for (const char c : bytes) value = value << 8 | static_cast<unsigned char>(c);
   Valid valid{.place = input.place(entry->value)};

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <string>
 
 #include "codec/frame_generator/routes.h"
@@ -124,6 +126,24 @@ TEST(BuiltTables, AreThoseThatWereGenerated) {
         << generated->id;
   }
   EXPECT_EQ(tables.of("nothing").protocol, nullptr);
+}
+
+TEST(BuiltTables, FieldsLieSideBySide) {
+  Model model;
+  Diagnostics diagnostics;
+  load_requirements("spec/requirements.yaml", model, diagnostics);
+  load_specs({"spec/wire/rubicon.ksy"}, model, diagnostics);
+  check_model(model, diagnostics, CheckFor::kRunTime);
+  const BuiltTables tables(model);
+  const reflect::Protocol& protocol = *tables.of("rubicon").protocol;
+  std::uintptr_t first = UINTPTR_MAX, last = 0;
+  for (int i = 0; i < protocol.type_count; ++i) {
+    const auto at = reinterpret_cast<std::uintptr_t>(protocol.types[i]->fields);
+    if (at == 0) continue;
+    first = std::min(first, at);
+    last = std::max(last, at);
+  }
+  EXPECT_LT(last - first, std::uintptr_t{1} << 18);
 }
 
 TEST(BuiltTables, NeedNoRequirement) {

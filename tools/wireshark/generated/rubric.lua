@@ -10,14 +10,14 @@ enums["tinyos.frame_control_part"] = {[7] = "type", [32] = "ack_request", [53071
 enums["tinyos.serial_kind"] = {[67] = "ack", [68] = "packet_ack", [69] = "packet_noack", [255] = "unknown"}
 enums["tinyos.dispatch"] = {[0] = "active_message", [1] = "cc1000", [2] = "ieee802154", [255] = "unknown"}
 types["tinyos.serial_frame"] = {
-  name = "serial_frame", rule = "WIRE-SERIAL-KIND",
+  name = "serial_frame", min = 1, rule = "WIRE-SERIAL-KIND",
   doc = "What is between two flags on the serial line, unescaped, without its CRC. The CRC-16 over these bytes follows them, low byte first.",
   {name = "kind", kind = "uint", width = 1, enum = "tinyos.serial_kind", rule = "WIRE-SERIAL-KIND", doc = "Packet kind. An unknown kind is shown and kept."},
   {name = "seq_num", kind = "uint", width = 1, condition = function(d) return (d:u8(0) == 67) or (d:u8(0) == 68) end, rule = "WIRE-SERIAL-SEQ", doc = "Of the frame to confirm, or of the frame that it confirms."},
   {name = "packet", kind = "bytes", to_end = true, rule = "WIRE-SERIAL-KIND", doc = "From the dispatch byte on."},
 }
 types["tinyos.sf_packet"] = {
-  name = "sf_packet", max = 256, rule = "WIRE-SF-LENGTH",
+  name = "sf_packet", max = 256, min = 2, rule = "WIRE-SF-LENGTH",
   doc = "A packet on a serial forwarder connection. The stream begins with two bytes from each side: 'U' and a version.",
   {name = "length", kind = "uint", width = 1, min = 1, max = 255, rule = "WIRE-SF-LENGTH", doc = "Bytes of the packet."},
   {name = "packet", kind = "bytes", size = function(d) return d:u8(0) end, rule = "WIRE-SF-LENGTH", doc = "From the dispatch byte on."},
@@ -48,20 +48,20 @@ types["tinyos.mac_ack"] = {
   {name = "dsn", kind = "uint", width = 1, rule = "WIRE-RADIO-HEADER", doc = "Of the frame that it acknowledges."},
 }
 types["oscilloscope.oscilloscope"] = {
-  name = "oscilloscope", max = 122, rule = "WIRE-AM-HEADER",
+  name = "oscilloscope", max = 122, min = 8, rule = "WIRE-AM-HEADER",
   doc = "The demo application of TinyOS: a mote sends ten readings of its sensor in a message. It shows that another protocol over the same frames is one more file here.",
   {name = "am", kind = "struct", type = "tinyos.am_header", rule = "WIRE-AM-HEADER"},
   {name = "payload", kind = "struct", key = function(d) return d:u8(7) end, cases = {[147] = "oscilloscope.oscilloscope_msg"}, size = function(d) return d:u8(5) end, rule = "WIRE-AM-LENGTH"},
 }
 types["oscilloscope.radio_i_frame"] = {
-  name = "radio_i_frame", rule = "WIRE-RADIO-HEADER",
+  name = "radio_i_frame", min = 11, rule = "WIRE-RADIO-HEADER",
   {name = "mac", kind = "struct", type = "tinyos.mac_header", rule = "WIRE-RADIO-HEADER"},
   {name = "network", kind = "uint", width = 1, one_of = {63}, rule = "WIRE-RADIO-NETWORK"},
   {name = "type", kind = "uint", width = 1, rule = "WIRE-RADIO-HEADER"},
   {name = "payload", kind = "struct", key = function(d) return d:u8(10) end, cases = {[147] = "oscilloscope.oscilloscope_msg"}, to_end = true, rule = "WIRE-RADIO-LENGTH"},
 }
 types["oscilloscope.radio_t_frame"] = {
-  name = "radio_t_frame", rule = "WIRE-RADIO-HEADER",
+  name = "radio_t_frame", min = 10, rule = "WIRE-RADIO-HEADER",
   {name = "mac", kind = "struct", type = "tinyos.mac_header", rule = "WIRE-RADIO-HEADER"},
   {name = "type", kind = "uint", width = 1, rule = "WIRE-RADIO-HEADER"},
   {name = "payload", kind = "struct", key = function(d) return d:u8(9) end, cases = {[147] = "oscilloscope.oscilloscope_msg"}, to_end = true, rule = "WIRE-RADIO-LENGTH"},
@@ -83,13 +83,13 @@ enums["rubicon.mote_type"] = {[1] = "telosb_demo", [2] = "iris_demo", [3] = "mic
 enums["rubicon.pid"] = {[65533] = "proxy", [65534] = "local", [65535] = "broadcast"}
 enums["rubicon.devid"] = {[65533] = "null", [65534] = "local", [65535] = "broadcast"}
 types["rubicon.rubicon"] = {
-  name = "rubicon", max = 122, rule = "WIRE-AM-HEADER",
+  name = "rubicon", max = 122, min = 8, rule = "WIRE-AM-HEADER",
   doc = "The messages of the RUBICON Communication Layer on TinyOS active messages: joins, network messages between islands, and what applications carry in them. seq is syntax: bytes that break it are malformed. instances are interpretations: bytes that do not fit one stay opaque, with a note.",
   {name = "am", kind = "struct", type = "tinyos.am_header", rule = "WIRE-AM-HEADER"},
   {name = "payload", kind = "struct", key = function(d) return d:u8(7) end, cases = {[11] = "rubicon.command", [12] = "rubicon.serial_data", [20] = "rubicon.learning_module_cmd", [21] = "rubicon.learning_module_float_cmd", [28] = "rubicon.net_msg", [37] = "rubicon.config"}, size = function(d) return d:u8(5) end, rule = "WIRE-AM-LENGTH"},
 }
 types["rubicon.radio_i_frame"] = {
-  name = "radio_i_frame", rule = "WIRE-RADIO-HEADER",
+  name = "radio_i_frame", min = 11, rule = "WIRE-RADIO-HEADER",
   doc = "On the radio, with the 6LoWPAN network byte (I-frame).",
   {name = "mac", kind = "struct", type = "tinyos.mac_header", rule = "WIRE-RADIO-HEADER"},
   {name = "network", kind = "uint", width = 1, one_of = {63}, rule = "WIRE-RADIO-NETWORK", doc = "NALP code of TinyOS in 6LoWPAN."},
@@ -97,7 +97,7 @@ types["rubicon.radio_i_frame"] = {
   {name = "payload", kind = "struct", key = function(d) return d:u8(10) end, cases = {[6] = "rubicon.rssi_beacon", [14] = "rubicon.join_request", [15] = "rubicon.join_reply", [28] = "rubicon.net_msg", [29] = "rubicon.ack_join"}, to_end = true, rule = "WIRE-RADIO-LENGTH"},
 }
 types["rubicon.radio_t_frame"] = {
-  name = "radio_t_frame", rule = "WIRE-RADIO-HEADER",
+  name = "radio_t_frame", min = 10, rule = "WIRE-RADIO-HEADER",
   doc = "On the radio, without a network byte (T-frame, TFRAMES builds).",
   {name = "mac", kind = "struct", type = "tinyos.mac_header", rule = "WIRE-RADIO-HEADER"},
   {name = "type", kind = "uint", width = 1, enum = "rubicon.am_type", rule = "WIRE-RADIO-HEADER", doc = "AM type."},
@@ -119,7 +119,7 @@ types["rubicon.mote_desc"] = {
 masks["rubicon.transducer_mask"] = {count = 16, "light", "temp", "accel_x", "accel_y", "pir", "mic", "humid", "magnetic", "rssi1", "rssi2", "rssi3", "rssi4", "rssi5", false, false, false}
 masks["rubicon.actuator_mask"] = {count = 8, "led", "open", false, false, false, false, false, false}
 types["rubicon.net_msg"] = {
-  name = "net_msg", max = 114, rule = "WIRE-NET-HEADER",
+  name = "net_msg", max = 114, min = 14, rule = "WIRE-NET-HEADER",
   doc = "The message of the network level. Over the radio only nbytes of the payload are sent; on the serial line the whole 114 bytes, and bytes after the payload are left over from earlier frames.",
   {name = "dest", kind = "struct", type = "rubicon.r_addr", rule = "WIRE-NET-HEADER", doc = "To whom."},
   {name = "src", kind = "struct", type = "rubicon.r_addr", rule = "WIRE-NET-HEADER", doc = "From whom."},
@@ -129,7 +129,7 @@ types["rubicon.net_msg"] = {
   {name = "payload", kind = "struct", key = function(d) return d:be16(6) end, cases = {[65533] = "rubicon.app_msg_from_pc"}, otherwise = "rubicon.app_msg", size = function(d) return d:u8(11) end, rule = "WIRE-NET-PAYLOAD", doc = "The message of the transport level; who sent it decides what a learning code means."},
 }
 types["rubicon.app_msg"] = {
-  name = "app_msg", max = 102, rule = "WIRE-APP-HEADER",
+  name = "app_msg", max = 102, min = 2, rule = "WIRE-APP-HEADER",
   doc = "Message of the transport level, from a mote or a sink.",
   {name = "trans_id", kind = "uint", width = 1, enum = "rubicon.component", rule = "WIRE-APP-HEADER", doc = "Transport component."},
   {name = "app_id", kind = "uint", width = 1, enum = "rubicon.component", rule = "WIRE-APP-HEADER", doc = "Application component."},
@@ -144,7 +144,7 @@ types["rubicon.app_msg"] = {
   },
 }
 types["rubicon.app_msg_from_pc"] = {
-  name = "app_msg", max = 102, rule = "WIRE-APP-HEADER",
+  name = "app_msg", max = 102, min = 2, rule = "WIRE-APP-HEADER",
   doc = "Message of the transport level, from the PC or robot of an island.",
   {name = "trans_id", kind = "uint", width = 1, enum = "rubicon.component", rule = "WIRE-APP-HEADER", doc = "Transport component."},
   {name = "app_id", kind = "uint", width = 1, enum = "rubicon.component", rule = "WIRE-APP-HEADER", doc = "Application component."},
@@ -171,7 +171,7 @@ types["rubicon.rubicon_ack_seq_only"] = {
   {name = "seq_num", kind = "uint", width = 2, rule = "WIRE-RUBICON-ACK", doc = "Of the message that it acknowledges."},
 }
 types["rubicon.synaptic_data"] = {
-  name = "synaptic_data", max = 100, rule = "WIRE-SYNAPTIC-DATA",
+  name = "synaptic_data", max = 100, min = 0, rule = "WIRE-SYNAPTIC-DATA",
   doc = "The values of a synaptic channel.",
   {name = "values", kind = "float", width = 4, little = true, repeated = true, rule = "WIRE-SYNAPTIC-DATA", doc = "One for each connection, at most ten; after a forwarding sink stale values follow."},
 }
@@ -280,7 +280,7 @@ types["rubicon.transducer_update"] = {
   {name = "value", kind = "uint", width = 2, rule = "WIRE-UPDATES", doc = "Raw reading."},
 }
 types["rubicon.updates"] = {
-  name = "updates", max = 98, rule = "WIRE-UPDATES",
+  name = "updates", max = 98, min = 2, rule = "WIRE-UPDATES",
   doc = "Readings of a mote, as pairs of transducer and value.",
   {name = "type", kind = "uint", width = 1, expect = 35, enum = "rubicon.am_type", rule = "WIRE-UPDATES", doc = "Kind of the body."},
   {name = "output_size", kind = "uint", width = 1, min = 0, max = 24, rule = "WIRE-UPDATES", doc = "Number of pairs."},
@@ -330,7 +330,7 @@ types["rubicon.syn_create_cmd"] = {
   {name = "seq_num", kind = "uint", width = 2, rule = "WIRE-SYN-CREATE-CMD", doc = "Of this command."},
 }
 types["rubicon.learning_module_cmd"] = {
-  name = "learning_module_cmd", max = 100, rule = "WIRE-LEARNING-MODULE-CMD",
+  name = "learning_module_cmd", max = 100, min = 8, rule = "WIRE-LEARNING-MODULE-CMD",
   doc = "Weights of a learning module, four bits each, two in a byte.",
   {name = "type", kind = "uint", width = 1, enum = "rubicon.learning_code", rule = "WIRE-LEARNING-MODULE-CMD", doc = "Which matrix."},
   {name = "net_id", kind = "uint", width = 2, rule = "WIRE-LEARNING-MODULE-CMD", doc = "The learning module."},
@@ -341,7 +341,7 @@ types["rubicon.learning_module_cmd"] = {
   {name = "weights", kind = "uint", width = 1, repeated = true, count = function(d) return d:u8(7) end, rule = "WIRE-LEARNING-MODULE-CMD", doc = "Weights, two in a byte."},
 }
 types["rubicon.learning_module_float_cmd"] = {
-  name = "learning_module_float_cmd", max = 100, rule = "WIRE-LEARNING-MODULE-FLOAT-CMD",
+  name = "learning_module_float_cmd", max = 100, min = 8, rule = "WIRE-LEARNING-MODULE-FLOAT-CMD",
   doc = "Weights of a learning module as floats.",
   {name = "type", kind = "uint", width = 1, enum = "rubicon.learning_code", rule = "WIRE-LEARNING-MODULE-FLOAT-CMD", doc = "Which matrix."},
   {name = "net_id", kind = "uint", width = 2, rule = "WIRE-LEARNING-MODULE-FLOAT-CMD", doc = "The learning module."},
@@ -359,7 +359,7 @@ types["rubicon.learning_notification"] = {
   {name = "ack", kind = "uint", width = 1, rule = "WIRE-LEARNING-NOTIFICATION", doc = "0 is success."},
 }
 types["rubicon.learning_module_down"] = {
-  name = "learning_module_down", max = 96, rule = "WIRE-LEARNING-MODULE-DOWN",
+  name = "learning_module_down", max = 96, min = 4, rule = "WIRE-LEARNING-MODULE-DOWN",
   doc = "Weights of a learning module, to the PC.",
   {name = "type", kind = "uint", width = 1, expect = 24, enum = "rubicon.am_type", rule = "WIRE-LEARNING-MODULE-DOWN", doc = "Kind of the body."},
   {name = "net_id", kind = "uint", width = 2, rule = "WIRE-LEARNING-MODULE-DOWN", doc = "The learning module."},
@@ -367,7 +367,7 @@ types["rubicon.learning_module_down"] = {
   {name = "weights", kind = "float", width = 4, little = true, repeated = true, count = function(d) return d:u8(3) end, rule = "WIRE-LEARNING-MODULE-DOWN", doc = "Weights."},
 }
 types["rubicon.learning_output"] = {
-  name = "learning_output", max = 98, rule = "WIRE-LEARNING-OUTPUT",
+  name = "learning_output", max = 98, min = 2, rule = "WIRE-LEARNING-OUTPUT",
   doc = "Output of a learning module, to the PC.",
   {name = "type", kind = "uint", width = 1, expect = 25, enum = "rubicon.am_type", rule = "WIRE-LEARNING-OUTPUT", doc = "Kind of the body."},
   {name = "output_size", kind = "uint", width = 1, min = 0, max = 24, rule = "WIRE-LEARNING-OUTPUT", doc = "Number of values."},
@@ -393,7 +393,7 @@ types["rubicon.net_data"] = {
   {name = "rssi", kind = "uint", width = 2, rule = "WIRE-NET-DATA", doc = "Signal strength, raw."},
 }
 types["rubicon.connless"] = {
-  name = "connless", max = 108, rule = "WIRE-CONNLESS",
+  name = "connless", max = 108, min = 8, rule = "WIRE-CONNLESS",
   doc = "Obsolete transport message.",
   {name = "msg_type", kind = "uint", width = 1, enum = "rubicon.am_type", rule = "WIRE-CONNLESS", doc = "Kind of the payload."},
   {name = "island_addr", kind = "uint", width = 1, rule = "WIRE-CONNLESS", doc = "Island."},
@@ -475,13 +475,29 @@ local usual_protocol = 1
 -- Decoding by the tables above: the same rules as codec/reflect/decode.cc, in Lua. It knows the
 -- tables' form and no protocol.
 
--- Loads of expressions: numbers at an offset from the start of a structure; 0 beyond its end.
+-- What expressions read: numbers at an offset from the start of a structure, 0 beyond its end, and
+-- what its parameters are. `node`: the structure, as far as it is decoded.
 local Window = {}
 Window.__index = Window
 
-local function window(bytes, base, limit)
-  return setmetatable({bytes = bytes, base = base, limit = limit}, Window)
+local function window(bytes, base, limit, params, node)
+  return setmetatable({bytes = bytes, base = base, limit = limit, params = params, node = node},
+                      Window)
 end
+
+-- The same from the start of a field, which lies where those before it end.
+function Window:from(index)
+  for _, child in ipairs(self.node) do
+    if child.field == self.node.type[index] then
+      return window(self.bytes, child.offset, self.limit)
+    end
+  end
+  return window(self.bytes, self.limit, self.limit)
+end
+
+-- Both round down, as Kaitai Struct does; by 0 they are 0.
+function Window:quotient(a, b) return b == 0 and 0 or math.floor(a / b) end
+function Window:remainder(a, b) return b == 0 and 0 or a % b end
 
 function Window:u8(offset)
   local at = self.base + offset
@@ -536,6 +552,11 @@ Decoder.__index = Decoder
 function Decoder:fail(fault, offset, field, text)
   self.error = {fault = fault, offset = offset, rule = field.rule, text = text}
   return false
+end
+
+-- The window of the open structure, which begins at `base`.
+function Decoder:window(base, limit)
+  return window(self.bytes, base, limit, self.params, self.open)
 end
 
 function Decoder:note(kind, offset, text)
@@ -608,19 +629,25 @@ end
 
 -- The functions below return whether all is well and where the next field begins.
 
+local function bytes_text(count)
+  return string.format("%d byte%s", count, count == 1 and "" or "s")
+end
+
+function Decoder:missing(field, at, limit, needed)
+  local text = string.format("%s needs %s, the bytes end at %d", field.name, bytes_text(needed),
+                             limit)
+  return self:fail("truncated", limit, field, text), at
+end
+
 function Decoder:truncated(parent, field, at, limit, needed)
   if at < limit then add(parent, "bytes", field, at, limit - at) end
-  local text = string.format("%s needs %d bytes, the bytes end at %d", field.name, needed, limit)
-  return self:fail("truncated", limit, field, text), at
+  return self:missing(field, at, limit, needed)
 end
 
 function Decoder:number(parent, field, at, limit)
   local width = field.width
   if field.shares then at = at - 1 end  -- Its first bits are in the last byte of the field before.
-  if limit - at < width then
-    local text = string.format("%s needs %d bytes, the bytes end at %d", field.name, width, limit)
-    return self:fail("truncated", limit, field, text), at
-  end
+  if limit - at < width then return self:missing(field, at, limit, width) end
   local value = load_number(field, self.bytes, at)
   if (field.min or field.one_of) and not self:is_allowed(field, value, at) then
     return false, at
@@ -635,10 +662,14 @@ end
 
 function Decoder:array(parent, field, base, at, limit)
   local element = field.kind == "struct" and types[field.type] or nil
+  if field.ends then return self:up_to(parent, field, element, base, at, limit) end
+  if element and element.min then
+    return self:varying(parent, field, element, base, at, limit)
+  end
   local width = element and element.max or field.width
   local count
   if field.count then
-    count = field.count(window(self.bytes, base, limit))
+    count = field.count(self:window(base, limit))
     if count < 0 or count * width > limit - at then
       return self:truncated(parent, field, at, limit, count * width)
     end
@@ -652,7 +683,9 @@ function Decoder:array(parent, field, base, at, limit)
   for i = 0, count - 1 do
     local from = at + i * width
     if element then
-      if not self:structure(node, element, field, from, from + width) then return false, at end
+      if not self:call(node, element, field.arguments, field, base, limit, from, from + width) then
+        return false, at
+      end
     else
       add(node, "number", field, from, width).value = load_number(field, self.bytes, from)
     end
@@ -660,11 +693,52 @@ function Decoder:array(parent, field, base, at, limit)
   return true, at + count * width
 end
 
+local MOST_EMPTY = 256  -- Elements of a list that take no byte.
+
+-- Elements of varying size, one after the other.
+function Decoder:varying(parent, field, element, base, at, limit)
+  local count = field.count and field.count(self:window(base, limit)) or limit - at
+  local to_end = not field.count
+  if count < 0 or not to_end and count * element.min > limit - at then
+    return self:truncated(parent, field, at, limit, count * element.min)
+  end
+  local node = add(parent, "structs", field, at, 0)
+  local good, begin = true, at
+  while good and #node < count and not (to_end and at == limit) do
+    local before = at
+    good, at = self:call(node, element, field.arguments, field, base, limit, at, limit)
+    if at == before and (to_end or #node > MOST_EMPTY) then break end
+  end
+  node.size = at - begin
+  return good, at
+end
+
+-- Elements up to the first for which the condition holds.
+function Decoder:up_to(parent, field, element, base, at, limit)
+  local node = add(parent, element and "structs" or "numbers", field, at, 0)
+  local good, done, begin = true, false, at
+  while good and not done do
+    local before = at
+    if element then
+      good, at = self:call(node, element, field.arguments, field, base, limit, at, limit)
+    elseif limit - at < field.width then
+      good = self:missing(field, at, limit, field.width)
+    else
+      add(node, "number", field, at, field.width).value = load_number(field, self.bytes, at)
+      at = at + field.width
+    end
+    done = good and field.ends(window(self.bytes, before, at, self.params, node[#node]))
+    if good and not done and at == before then good = self:missing(field, at, at, 1) end
+  end
+  node.size = at - begin
+  return good, at
+end
+
 -- A message that only another carrier has, where this one has none for the key.
 function Decoder:elsewhere(parent, field, key, at, limit)
   local name = self.more and self.more.cases[key]
   if not name then return false end
-  if self:fits(parent, field, types[name], at, limit) then
+  if self:fits(parent, field, types[name], nil, at, at, limit) then
     self:note("radio_only", at, types[name].name .. " travels on the radio only")
   else
     self:note("does_not_fit", at, "the bytes do not fit " .. types[name].name)
@@ -673,11 +747,43 @@ function Decoder:elsewhere(parent, field, key, at, limit)
   return true
 end
 
+-- What a switch chooses, and what the parameters of that are.
+function Decoder:chosen(field, key)
+  local name, by_key = field.cases[key], field.case_arguments or {}
+  return types[name or field.otherwise], name and by_key[key] or by_key.otherwise
+end
+
+-- A structure in [at, stop) within the open one, which says what its parameters are.
+function Decoder:call(parent, type, arguments, field, base, limit, at, stop)
+  local outer = self.params
+  if arguments then
+    local params, given = {}, self:window(base, limit)
+    for i, one in ipairs(arguments) do
+      local value = one.value(given)
+      params[i] = value
+      if one.min and (value < one.min or value > one.max) then
+        add(parent, "struct", field, at, 0).type = type
+        return self:missing(field, at, stop, value)
+      end
+    end
+    self.params = params
+  end
+  local good, used = self:structure(parent, type, field, at, stop)
+  self.params = outer
+  return good, used
+end
+
 function Decoder:nested(parent, field, base, at, limit, outer)
-  local type = types[field.type]
+  local type, arguments = types[field.type], field.arguments
   if field.cases then
-    local key = field.key(window(self.bytes, base, outer))
-    type = types[field.cases[key] or field.otherwise]
+    local key = field.key(self:window(base, outer))
+    type, arguments = self:chosen(field, key)
+    if not type and not (field.size or field.to_end) then
+      if limit > at then
+        self:note("unknown_message", at, string.format("no message has the key %d", key))
+      end
+      return true, at
+    end
     if not type then
       if base == 0 and self:elsewhere(parent, field, key, at, limit) then return true, limit end
       if limit > at then
@@ -688,7 +794,7 @@ function Decoder:nested(parent, field, base, at, limit, outer)
     end
     self.path[#self.path + 1] = type
   end
-  local good, used = self:structure(parent, type, field, at, limit)
+  local good, used = self:call(parent, type, arguments, field, base, outer, at, limit)
   if not good then return false, at end
   if not (field.size or field.to_end) then return true, used end
   if used < limit then self:add_stale(used, limit) end
@@ -698,18 +804,22 @@ end
 function Decoder:other(parent, field, base, at, limit)
   local last = limit
   if field.size then
-    local size = field.size(window(self.bytes, base, limit))
+    local size = field.size(self:window(base, limit))
     if size < 0 or size > limit - at then
       return self:truncated(parent, field, at, limit, size)
     end
     last = at + size
   end
   if field.ends_with then
-    local stop = self.bytes:find(string.char(field.ends_with), at + 1, true)
-    if stop and stop <= limit then
-      last = stop
+    local unit = #field.ends_with
+    local stop = at
+    while stop + unit <= limit and self.bytes:sub(stop + 1, stop + unit) ~= field.ends_with do
+      stop = stop + unit
+    end
+    if stop + unit <= limit then
+      last = stop + unit
     elseif not field.may_lack_its_end then
-      return self:truncated(parent, field, at, limit, limit - at + 1)
+      return self:truncated(parent, field, at, limit, limit - at + unit)
     end
   end
   if field.repeated then return self:array(parent, field, base, at, last) end
@@ -730,10 +840,10 @@ function Decoder:other(parent, field, base, at, limit)
 end
 
 -- Whether the bytes are such a structure; if not, nothing of the attempt is left.
-function Decoder:fits(parent, field, type, at, limit)
+function Decoder:fits(parent, field, type, arguments, base, at, limit)
   local nodes, notes, stale, path = #parent, #self.notes, #self.stale, #self.path
   self.path[path + 1] = type
-  local good, used = self:structure(parent, type, field, at, limit)
+  local good, used = self:call(parent, type, arguments, field, base, limit, at, limit)
   if good then
     if used < limit then self:add_stale(used, limit) end
     return true
@@ -752,16 +862,17 @@ end
 -- Tries the interpretations of the bytes of field number `index`; true if one fits.
 function Decoder:interpret(parent, type, index, base, at, limit)
   local unfit, about
-  local whole = window(self.bytes, base, limit)
+  local whole = self:window(base, limit)
   for _, candidate in ipairs(type.interpretations) do
     if candidate.overlays == index and (not candidate.condition or candidate.condition(whole)) then
       about = candidate
-      local chosen = types[candidate.type]
+      local chosen, arguments = types[candidate.type], candidate.arguments
       if candidate.cases then
-        chosen = at < limit and types[candidate.cases[candidate.key(whole)] or candidate.otherwise]
+        chosen = nil
+        if at < limit then chosen, arguments = self:chosen(candidate, candidate.key(whole)) end
       end
       if chosen then
-        if self:fits(parent, candidate, chosen, at, limit) then return true end
+        if self:fits(parent, candidate, chosen, arguments, base, at, limit) then return true end
         unfit = chosen
       end
     end
@@ -781,11 +892,13 @@ end
 function Decoder:structure(parent, type, field, base, limit)
   local node = add(parent, "struct", field, base, 0)
   node.type = type
+  local around = self.open
+  self.open = node
   if type.max and limit - base > type.max then limit = base + type.max end
   local at = base
   local good = true
   for index, one in ipairs(type) do
-    if not one.condition or one.condition(window(self.bytes, base, limit)) then
+    if not one.condition or one.condition(self:window(base, limit)) then
       if one.width and not one.repeated then
         good, at = self:number(node, one, at, limit)
       elseif type.interpretations and one.kind == "bytes" and
@@ -798,6 +911,7 @@ function Decoder:structure(parent, type, field, base, limit)
     end
   end
   node.size = at - base
+  self.open = around
   return good, at
 end
 
@@ -810,7 +924,7 @@ local function decode(name, bytes, more)
   if good and used < #bytes then
     local rule = #type > 0 and type[#type].rule or type.rule
     out.error = {fault = "trailing", offset = used, rule = rule,
-                 text = string.format("%d bytes more than the length says", #bytes - used)}
+                 text = bytes_text(#bytes - used) .. " more than the length says"}
   end
   return out
 end
@@ -903,7 +1017,7 @@ local function define_mask(field, abbreviation)
   end
 end
 
-local define_message
+local define_message, define_parts
 
 local function define_field(field, prefix)
   local abbreviation = prefix .. "." .. field.name
@@ -934,7 +1048,7 @@ local function define_field(field, prefix)
     define(abbreviation, function()
       return ProtoField.none(abbreviation, field.name, field.doc)
     end)
-    for _, one in ipairs(types[field.type]) do define_field(one, abbreviation) end
+    define_parts(types[field.type], abbreviation)
   elseif field.text then
     define(abbreviation, function()
       return ProtoField.string(abbreviation, field.name, base.UNICODE, field.doc)
@@ -943,6 +1057,17 @@ local function define_field(field, prefix)
     define(abbreviation, function()
       return ProtoField.bytes(abbreviation, field.name, base.SPACE, field.doc)
     end)
+  end
+end
+
+define_parts = function(type, abbreviation)
+  for _, field in ipairs(type) do define_field(field, abbreviation) end
+  for _, one in ipairs(type.interpretations or {}) do
+    if one.cases then
+      define_field(one, abbreviation)
+    else
+      define_message(types[one.type])
+    end
   end
 end
 
@@ -955,14 +1080,7 @@ define_message = function(type)
   define(abbreviation, function()
     return ProtoField.none(abbreviation, type.name, type.doc)
   end)
-  for _, field in ipairs(type) do define_field(field, abbreviation) end
-  for _, one in ipairs(type.interpretations or {}) do
-    if one.cases then
-      define_field(one, abbreviation)
-    else
-      define_message(types[one.type])
-    end
-  end
+  define_parts(type, abbreviation)
 end
 
 local function define_all()

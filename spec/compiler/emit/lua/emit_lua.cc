@@ -52,16 +52,18 @@ std::string full_name(const Named& named) {
 }
 
 std::string load_text(const Expr& expr) {
+  if (expr.param >= 0) return fmt::format("d.params[{}]", expr.param + 1);
   const Field& field = *expr.field;
+  const std::string at = expr.from < 0 ? "d" : fmt::format("d:from({})", expr.from + 1);
   if (field.bit_width > 0) {
     const std::string bits =
-        fmt::format("d:bits({}, {}, {}, {}, {})", expr.offset_bytes, field.width_bytes,
+        fmt::format("{}:bits({}, {}, {}, {}, {})", at, expr.offset_bytes, field.width_bytes,
                     field.little_endian, field.bit_shift, field.bit_width);
     const bool is_bool = field.bit_width == 1 && field.enumeration == nullptr && !expr.to_i;
     return is_bool ? "(" + bits + " == 1)" : bits;
   }
   const std::string order = field.width_bytes == 1 ? "u" : field.little_endian ? "le" : "be";
-  return fmt::format("d:{}{}({})", order, 8 * field.width_bytes, expr.offset_bytes);
+  return fmt::format("{}:{}{}({})", at, order, 8 * field.width_bytes, expr.offset_bytes);
 }
 
 std::string_view operator_text(ExprOp op) {
@@ -80,13 +82,17 @@ std::string expr_text(const Expr& expr) {
   const std::string left = expr_text(*expr.operands[0]);
   if (expr.op == ExprOp::kNot) return "not (" + left + ")";
   const std::string right = expr_text(*expr.operands[1]);
-  // Both round down, as Kaitai Struct does.
-  if (expr.op == ExprOp::kDiv) return fmt::format("math.floor(({}) / ({}))", left, right);
+  if (expr.op == ExprOp::kDiv) return fmt::format("d:quotient({}, {})", left, right);
+  if (expr.op == ExprOp::kMod) return fmt::format("d:remainder({}, {})", left, right);
   const auto side = [](const Expr& operand, const std::string& text) {
     return operand.operands.empty() ? text : "(" + text + ")";
   };
   return fmt::format("{} {} {}", side(*expr.operands[0], left), operator_text(expr.op),
                      side(*expr.operands[1], right));
+}
+
+std::string function_text(const Expr& expr) {
+  return "function(d) return " + expr_text(expr) + " end";
 }
 
 /// `key = value` pairs of a Lua table.
@@ -99,7 +105,7 @@ class Entry {
     if (!text.empty()) add(key, quote(text));
   }
   void add_function(std::string_view key, const ExprPtr& expr) {
-    if (expr) add(key, "function(d) return " + expr_text(*expr) + " end");
+    if (expr) add(key, function_text(*expr));
   }
   std::string text() const { return fmt::format("{{{}}}", fmt::join(pairs_, ", ")); }
 
@@ -114,15 +120,42 @@ std::string number_list(const std::vector<std::int64_t>& values) {
   return fmt::format("{{{}}}", fmt::join(values, ", "));
 }
 
-void add_choice(const Field& field, Entry& entry) {
-  entry.add_function("key", field.choice->key);
-  std::vector<std::string> cases;
-  for (const SwitchCase& one : field.choice->cases) {
+/// Returns what the parameters of a type are for one use of it; conditions have no range.
+std::string argument_list(const Type& type, const std::vector<ExprPtr>& given) {
+  std::vector<std::string> out;
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    Entry one;
+    one.add_function("value", given[i]);
+    if (!type.params[i].is_bool) {
+      one.add("min", std::to_string(type.params[i].range.min));
+      one.add("max", std::to_string(type.params[i].range.max));
+    }
+    out.push_back(one.text());
+  }
+  return fmt::format("{{{}}}", fmt::join(out, ", "));
+}
+
+void add_choice(const Switch& choice, Entry& entry) {
+  entry.add_function("key", choice.key);
+  std::vector<std::string> cases, arguments;
+  const auto add_arguments = [&](const std::string& key, const SwitchCase& one) {
+    if (one.arguments.empty()) return;
+    arguments.push_back(fmt::format("{} = {}", key, argument_list(*one.type, one.arguments)));
+  };
+  for (const SwitchCase& one : choice.cases) {
     if (one.type == nullptr) continue;
-    cases.push_back(fmt::format("[{}] = {}", one.key, full_name(*one.type)));
+    const std::string key = fmt::format("[{}]", one.key);
+    cases.push_back(fmt::format("{} = {}", key, full_name(*one.type)));
+    add_arguments(key, one);
   }
   entry.add("cases", fmt::format("{{{}}}", fmt::join(cases, ", ")));
-  if (field.choice->otherwise) entry.add("otherwise", full_name(*field.choice->otherwise->type));
+  if (choice.otherwise) {
+    entry.add("otherwise", full_name(*choice.otherwise->type));
+    add_arguments("otherwise", *choice.otherwise);
+  }
+  if (!arguments.empty()) {
+    entry.add("case_arguments", fmt::format("{{{}}}", fmt::join(arguments, ", ")));
+  }
 }
 
 std::string field_text(const Field& field) {
@@ -147,15 +180,20 @@ std::string field_text(const Field& field) {
   if (field.kind == ValueKind::kMask) entry.add("mask", full_name(*field.type));
   if (field.kind == ValueKind::kStruct && field.type != nullptr) {
     entry.add("type", full_name(*field.type));
+    if (!field.arguments.empty()) {
+      entry.add("arguments", argument_list(*field.type, field.arguments));
+    }
   }
-  if (field.choice) add_choice(field, entry);
+  if (field.choice) add_choice(*field.choice, entry);
   if (field.repeat != RepeatKind::kOnce) entry.add("repeated", "true");
   if (field.extent == ExtentKind::kToEnd) entry.add("to_end", "true");
   entry.add_function("size", field.size);
   entry.add_function("count", field.count);
   entry.add_function("condition", field.condition);
+  entry.add_function("ends", field.until);
   if (field.extent == ExtentKind::kTerminated) {
-    entry.add("ends_with", std::to_string(field.text->terminator));
+    entry.add("ends_with",
+              fmt::format("string.char({}):rep({})", field.text->terminator, field.text->unit));
     if (field.text->may_lack_its_end) entry.add("may_lack_its_end", "true");
   }
   // Text in another encoding is shown as bytes.
@@ -184,12 +222,15 @@ std::string field_text(const Field& field) {
 std::string type_table(const Type& type) {
   std::string out = fmt::format("types[{}] = {{\n  name = {},", full_name(type), quote(type.name));
   if (type.max_size != UINT32_MAX) out += fmt::format(" max = {},", type.max_size);
+  if (!type.constant_size() || type.max_size == 0) {  // As elements such are read one by one.
+    out += fmt::format(" min = {},", type.min_size);
+  }
   if (!type.requirement.empty()) out += fmt::format(" rule = {},", quote(type.requirement));
   if (!type.doc.empty()) out += "\n  doc = " + quote(type.doc) + ",";
   for (const auto& field : type.fields) out += "\n  " + field_text(*field) + ",";
   std::string interpretations;
   for (const auto& instance : type.instances) {
-    if (!instance->is_peek) interpretations += "\n    " + field_text(*instance) + ",";
+    if (instance->overlays >= 0) interpretations += "\n    " + field_text(*instance) + ",";
   }
   if (!interpretations.empty()) out += "\n  interpretations = {" + interpretations + "\n  },";
   return out + "\n}\n";

@@ -1,6 +1,8 @@
 #include "spec/compiler/emit/tables/built_tables.h"
 
 #include <algorithm>
+#include <memory>
+#include <type_traits>
 
 #include "spec/compiler/emit/tables/routes.h"
 
@@ -71,7 +73,7 @@ std::vector<reflect::ExprStep> postfix(const Expr& expr) {
 
 class BuiltTables::Builder {
  public:
-  explicit Builder(std::vector<std::shared_ptr<const void>>& kept) : kept_(kept) {}
+  explicit Builder(BuiltTables& tables) : kept_(tables.kept_), fields_(&tables.fields_) {}
 
   BuiltSpec build(const Spec& spec) {
     std::vector<const reflect::EnumTable*> enums;
@@ -103,6 +105,16 @@ class BuiltTables::Builder {
     const auto kept = std::make_shared<const std::vector<T>>(values);
     kept_.push_back(kept);
     return kept->data();
+  }
+  /// The same for what has fields. These lie side by side, as those of built-in tables do, so that
+  /// what belongs to a field is found by its address (tools/format/json_nodes.h).
+  template <class T>
+  const T* near(const std::vector<T>& values) {
+    static_assert(std::is_trivially_destructible_v<T>);
+    if (values.empty()) return nullptr;
+    T* const out = std::pmr::polymorphic_allocator<T>(fields_).allocate(values.size());
+    std::uninitialized_copy(values.begin(), values.end(), out);
+    return out;
   }
   template <class T>
   const T* single(const T& value) {
@@ -238,7 +250,7 @@ class BuiltTables::Builder {
     std::vector<const char*> params;
     for (const Param& param : one.params) params.push_back(text(param.id));
     return single<reflect::Type>(
-        {text(one.id), text(one.name), list(fields), count(fields), list(interpretations),
+        {text(one.id), text(one.name), near(fields), count(fields), near(interpretations),
          count(interpretations), one.min_size, one.max_size, static_cast<std::int32_t>(am_type),
          rule_of(one.requirement), text(one.doc), text(one.doc_ref), list(params), few(params)});
   }
@@ -274,13 +286,14 @@ class BuiltTables::Builder {
   }
 
   std::vector<std::shared_ptr<const void>>& kept_;
+  std::pmr::memory_resource* fields_;
   std::map<const Enum*, const reflect::EnumTable*> enums_;
   std::map<const Type*, const reflect::MaskTable*> masks_;
   std::map<const Type*, const reflect::Type*> types_;
 };
 
 BuiltTables::BuiltTables(const Model& model) {
-  Builder builder(kept_);
+  Builder builder(*this);
   for (const auto& spec : model.specs) specs_[spec->id] = builder.build(*spec);
 }
 

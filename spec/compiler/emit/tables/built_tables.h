@@ -4,6 +4,7 @@
 
 #include <map>
 #include <memory>
+#include <memory_resource>
 #include <string>
 #include <vector>
 
@@ -34,7 +35,10 @@ class BuiltTables {
  private:
   class Builder;
 
+  static constexpr std::size_t kFieldBytes = 1U << 19;  // Of far more fields than specs have.
+
   std::vector<std::shared_ptr<const void>> kept_;
+  std::pmr::monotonic_buffer_resource fields_{kFieldBytes};
   std::map<std::string, BuiltSpec> specs_;
 };
 

@@ -1,13 +1,29 @@
 -- Decoding by the tables above: the same rules as codec/reflect/decode.cc, in Lua. It knows the
 -- tables' form and no protocol.
 
--- Loads of expressions: numbers at an offset from the start of a structure; 0 beyond its end.
+-- What expressions read: numbers at an offset from the start of a structure, 0 beyond its end, and
+-- what its parameters are. `node`: the structure, as far as it is decoded.
 local Window = {}
 Window.__index = Window
 
-local function window(bytes, base, limit)
-  return setmetatable({bytes = bytes, base = base, limit = limit}, Window)
+local function window(bytes, base, limit, params, node)
+  return setmetatable({bytes = bytes, base = base, limit = limit, params = params, node = node},
+                      Window)
 end
+
+-- The same from the start of a field, which lies where those before it end.
+function Window:from(index)
+  for _, child in ipairs(self.node) do
+    if child.field == self.node.type[index] then
+      return window(self.bytes, child.offset, self.limit)
+    end
+  end
+  return window(self.bytes, self.limit, self.limit)
+end
+
+-- Both round down, as Kaitai Struct does; by 0 they are 0.
+function Window:quotient(a, b) return b == 0 and 0 or math.floor(a / b) end
+function Window:remainder(a, b) return b == 0 and 0 or a % b end
 
 function Window:u8(offset)
   local at = self.base + offset
@@ -62,6 +78,11 @@ Decoder.__index = Decoder
 function Decoder:fail(fault, offset, field, text)
   self.error = {fault = fault, offset = offset, rule = field.rule, text = text}
   return false
+end
+
+-- The window of the open structure, which begins at `base`.
+function Decoder:window(base, limit)
+  return window(self.bytes, base, limit, self.params, self.open)
 end
 
 function Decoder:note(kind, offset, text)
@@ -134,19 +155,25 @@ end
 
 -- The functions below return whether all is well and where the next field begins.
 
+local function bytes_text(count)
+  return string.format("%d byte%s", count, count == 1 and "" or "s")
+end
+
+function Decoder:missing(field, at, limit, needed)
+  local text = string.format("%s needs %s, the bytes end at %d", field.name, bytes_text(needed),
+                             limit)
+  return self:fail("truncated", limit, field, text), at
+end
+
 function Decoder:truncated(parent, field, at, limit, needed)
   if at < limit then add(parent, "bytes", field, at, limit - at) end
-  local text = string.format("%s needs %d bytes, the bytes end at %d", field.name, needed, limit)
-  return self:fail("truncated", limit, field, text), at
+  return self:missing(field, at, limit, needed)
 end
 
 function Decoder:number(parent, field, at, limit)
   local width = field.width
   if field.shares then at = at - 1 end  -- Its first bits are in the last byte of the field before.
-  if limit - at < width then
-    local text = string.format("%s needs %d bytes, the bytes end at %d", field.name, width, limit)
-    return self:fail("truncated", limit, field, text), at
-  end
+  if limit - at < width then return self:missing(field, at, limit, width) end
   local value = load_number(field, self.bytes, at)
   if (field.min or field.one_of) and not self:is_allowed(field, value, at) then
     return false, at
@@ -161,10 +188,14 @@ end
 
 function Decoder:array(parent, field, base, at, limit)
   local element = field.kind == "struct" and types[field.type] or nil
+  if field.ends then return self:up_to(parent, field, element, base, at, limit) end
+  if element and element.min then
+    return self:varying(parent, field, element, base, at, limit)
+  end
   local width = element and element.max or field.width
   local count
   if field.count then
-    count = field.count(window(self.bytes, base, limit))
+    count = field.count(self:window(base, limit))
     if count < 0 or count * width > limit - at then
       return self:truncated(parent, field, at, limit, count * width)
     end
@@ -178,7 +209,9 @@ function Decoder:array(parent, field, base, at, limit)
   for i = 0, count - 1 do
     local from = at + i * width
     if element then
-      if not self:structure(node, element, field, from, from + width) then return false, at end
+      if not self:call(node, element, field.arguments, field, base, limit, from, from + width) then
+        return false, at
+      end
     else
       add(node, "number", field, from, width).value = load_number(field, self.bytes, from)
     end
@@ -186,11 +219,52 @@ function Decoder:array(parent, field, base, at, limit)
   return true, at + count * width
 end
 
+local MOST_EMPTY = 256  -- Elements of a list that take no byte.
+
+-- Elements of varying size, one after the other.
+function Decoder:varying(parent, field, element, base, at, limit)
+  local count = field.count and field.count(self:window(base, limit)) or limit - at
+  local to_end = not field.count
+  if count < 0 or not to_end and count * element.min > limit - at then
+    return self:truncated(parent, field, at, limit, count * element.min)
+  end
+  local node = add(parent, "structs", field, at, 0)
+  local good, begin = true, at
+  while good and #node < count and not (to_end and at == limit) do
+    local before = at
+    good, at = self:call(node, element, field.arguments, field, base, limit, at, limit)
+    if at == before and (to_end or #node > MOST_EMPTY) then break end
+  end
+  node.size = at - begin
+  return good, at
+end
+
+-- Elements up to the first for which the condition holds.
+function Decoder:up_to(parent, field, element, base, at, limit)
+  local node = add(parent, element and "structs" or "numbers", field, at, 0)
+  local good, done, begin = true, false, at
+  while good and not done do
+    local before = at
+    if element then
+      good, at = self:call(node, element, field.arguments, field, base, limit, at, limit)
+    elseif limit - at < field.width then
+      good = self:missing(field, at, limit, field.width)
+    else
+      add(node, "number", field, at, field.width).value = load_number(field, self.bytes, at)
+      at = at + field.width
+    end
+    done = good and field.ends(window(self.bytes, before, at, self.params, node[#node]))
+    if good and not done and at == before then good = self:missing(field, at, at, 1) end
+  end
+  node.size = at - begin
+  return good, at
+end
+
 -- A message that only another carrier has, where this one has none for the key.
 function Decoder:elsewhere(parent, field, key, at, limit)
   local name = self.more and self.more.cases[key]
   if not name then return false end
-  if self:fits(parent, field, types[name], at, limit) then
+  if self:fits(parent, field, types[name], nil, at, at, limit) then
     self:note("radio_only", at, types[name].name .. " travels on the radio only")
   else
     self:note("does_not_fit", at, "the bytes do not fit " .. types[name].name)
@@ -199,11 +273,43 @@ function Decoder:elsewhere(parent, field, key, at, limit)
   return true
 end
 
+-- What a switch chooses, and what the parameters of that are.
+function Decoder:chosen(field, key)
+  local name, by_key = field.cases[key], field.case_arguments or {}
+  return types[name or field.otherwise], name and by_key[key] or by_key.otherwise
+end
+
+-- A structure in [at, stop) within the open one, which says what its parameters are.
+function Decoder:call(parent, type, arguments, field, base, limit, at, stop)
+  local outer = self.params
+  if arguments then
+    local params, given = {}, self:window(base, limit)
+    for i, one in ipairs(arguments) do
+      local value = one.value(given)
+      params[i] = value
+      if one.min and (value < one.min or value > one.max) then
+        add(parent, "struct", field, at, 0).type = type
+        return self:missing(field, at, stop, value)
+      end
+    end
+    self.params = params
+  end
+  local good, used = self:structure(parent, type, field, at, stop)
+  self.params = outer
+  return good, used
+end
+
 function Decoder:nested(parent, field, base, at, limit, outer)
-  local type = types[field.type]
+  local type, arguments = types[field.type], field.arguments
   if field.cases then
-    local key = field.key(window(self.bytes, base, outer))
-    type = types[field.cases[key] or field.otherwise]
+    local key = field.key(self:window(base, outer))
+    type, arguments = self:chosen(field, key)
+    if not type and not (field.size or field.to_end) then
+      if limit > at then
+        self:note("unknown_message", at, string.format("no message has the key %d", key))
+      end
+      return true, at
+    end
     if not type then
       if base == 0 and self:elsewhere(parent, field, key, at, limit) then return true, limit end
       if limit > at then
@@ -214,7 +320,7 @@ function Decoder:nested(parent, field, base, at, limit, outer)
     end
     self.path[#self.path + 1] = type
   end
-  local good, used = self:structure(parent, type, field, at, limit)
+  local good, used = self:call(parent, type, arguments, field, base, outer, at, limit)
   if not good then return false, at end
   if not (field.size or field.to_end) then return true, used end
   if used < limit then self:add_stale(used, limit) end
@@ -224,18 +330,22 @@ end
 function Decoder:other(parent, field, base, at, limit)
   local last = limit
   if field.size then
-    local size = field.size(window(self.bytes, base, limit))
+    local size = field.size(self:window(base, limit))
     if size < 0 or size > limit - at then
       return self:truncated(parent, field, at, limit, size)
     end
     last = at + size
   end
   if field.ends_with then
-    local stop = self.bytes:find(string.char(field.ends_with), at + 1, true)
-    if stop and stop <= limit then
-      last = stop
+    local unit = #field.ends_with
+    local stop = at
+    while stop + unit <= limit and self.bytes:sub(stop + 1, stop + unit) ~= field.ends_with do
+      stop = stop + unit
+    end
+    if stop + unit <= limit then
+      last = stop + unit
     elseif not field.may_lack_its_end then
-      return self:truncated(parent, field, at, limit, limit - at + 1)
+      return self:truncated(parent, field, at, limit, limit - at + unit)
     end
   end
   if field.repeated then return self:array(parent, field, base, at, last) end
@@ -256,10 +366,10 @@ function Decoder:other(parent, field, base, at, limit)
 end
 
 -- Whether the bytes are such a structure; if not, nothing of the attempt is left.
-function Decoder:fits(parent, field, type, at, limit)
+function Decoder:fits(parent, field, type, arguments, base, at, limit)
   local nodes, notes, stale, path = #parent, #self.notes, #self.stale, #self.path
   self.path[path + 1] = type
-  local good, used = self:structure(parent, type, field, at, limit)
+  local good, used = self:call(parent, type, arguments, field, base, limit, at, limit)
   if good then
     if used < limit then self:add_stale(used, limit) end
     return true
@@ -278,16 +388,17 @@ end
 -- Tries the interpretations of the bytes of field number `index`; true if one fits.
 function Decoder:interpret(parent, type, index, base, at, limit)
   local unfit, about
-  local whole = window(self.bytes, base, limit)
+  local whole = self:window(base, limit)
   for _, candidate in ipairs(type.interpretations) do
     if candidate.overlays == index and (not candidate.condition or candidate.condition(whole)) then
       about = candidate
-      local chosen = types[candidate.type]
+      local chosen, arguments = types[candidate.type], candidate.arguments
       if candidate.cases then
-        chosen = at < limit and types[candidate.cases[candidate.key(whole)] or candidate.otherwise]
+        chosen = nil
+        if at < limit then chosen, arguments = self:chosen(candidate, candidate.key(whole)) end
       end
       if chosen then
-        if self:fits(parent, candidate, chosen, at, limit) then return true end
+        if self:fits(parent, candidate, chosen, arguments, base, at, limit) then return true end
         unfit = chosen
       end
     end
@@ -307,11 +418,13 @@ end
 function Decoder:structure(parent, type, field, base, limit)
   local node = add(parent, "struct", field, base, 0)
   node.type = type
+  local around = self.open
+  self.open = node
   if type.max and limit - base > type.max then limit = base + type.max end
   local at = base
   local good = true
   for index, one in ipairs(type) do
-    if not one.condition or one.condition(window(self.bytes, base, limit)) then
+    if not one.condition or one.condition(self:window(base, limit)) then
       if one.width and not one.repeated then
         good, at = self:number(node, one, at, limit)
       elseif type.interpretations and one.kind == "bytes" and
@@ -324,6 +437,7 @@ function Decoder:structure(parent, type, field, base, limit)
     end
   end
   node.size = at - base
+  self.open = around
   return good, at
 end
 
@@ -336,7 +450,7 @@ local function decode(name, bytes, more)
   if good and used < #bytes then
     local rule = #type > 0 and type[#type].rule or type.rule
     out.error = {fault = "trailing", offset = used, rule = rule,
-                 text = string.format("%d bytes more than the length says", #bytes - used)}
+                 text = bytes_text(#bytes - used) .. " more than the length says"}
   end
   return out
 end

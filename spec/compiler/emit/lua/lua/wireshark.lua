@@ -48,7 +48,7 @@ local function define_mask(field, abbreviation)
   end
 end
 
-local define_message
+local define_message, define_parts
 
 local function define_field(field, prefix)
   local abbreviation = prefix .. "." .. field.name
@@ -79,7 +79,7 @@ local function define_field(field, prefix)
     define(abbreviation, function()
       return ProtoField.none(abbreviation, field.name, field.doc)
     end)
-    for _, one in ipairs(types[field.type]) do define_field(one, abbreviation) end
+    define_parts(types[field.type], abbreviation)
   elseif field.text then
     define(abbreviation, function()
       return ProtoField.string(abbreviation, field.name, base.UNICODE, field.doc)
@@ -88,6 +88,17 @@ local function define_field(field, prefix)
     define(abbreviation, function()
       return ProtoField.bytes(abbreviation, field.name, base.SPACE, field.doc)
     end)
+  end
+end
+
+define_parts = function(type, abbreviation)
+  for _, field in ipairs(type) do define_field(field, abbreviation) end
+  for _, one in ipairs(type.interpretations or {}) do
+    if one.cases then
+      define_field(one, abbreviation)
+    else
+      define_message(types[one.type])
+    end
   end
 end
 
@@ -100,14 +111,7 @@ define_message = function(type)
   define(abbreviation, function()
     return ProtoField.none(abbreviation, type.name, type.doc)
   end)
-  for _, field in ipairs(type) do define_field(field, abbreviation) end
-  for _, one in ipairs(type.interpretations or {}) do
-    if one.cases then
-      define_field(one, abbreviation)
-    else
-      define_message(types[one.type])
-    end
-  end
+  define_parts(type, abbreviation)
 end
 
 local function define_all()
