@@ -118,7 +118,7 @@ void starts_at_creation(Moment& moment) {
 void add_ends(Mutants& out) {
   add(out, "stopped_channel_goes_on", "stop_syn_channel changes nothing.", {"S6-STOPPED"_rule},
       refuses_silently<StopChannel>("S6-STOPPED"_rule));
-  add(out, "stop_all_goes_on", "stop_all_syn_channels changes nothing.", {"S6-STOPPED"_rule},
+  add(out, "stop_all_goes_on", "stop_all_syn_channels changes nothing.", {"S1-ALL"_rule},
       refuses_silently<StopAllChannels>("S6-STOPPED"_rule));
   add(out, "starts_at_creation", "A channel runs from its creation on.", {"S6-STOPPED"_rule},
       always(starts_at_creation));
