@@ -92,6 +92,9 @@ class Text(Folder):
         silent = self.write("silent reply.rtr", "".join(
             line for line in lines if "join_reply(" not in line or "mote_addr=4" not in line))
         out = self.shows(("check", *complete, silent), "FAIL J4-JOINED, mote 4, ", code=1)
+        number = next(i for i, line in enumerate(silent.read_text().splitlines(), 1)
+                      if "m4  >  rA" in line and "ack_join" in line)
+        self.assertRegex(out, rf"  > +\d+  line {number}, ")
         self.assertGreater(self.run_again(out), 0)
 
     def run_again(self, out):

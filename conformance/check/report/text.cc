@@ -208,10 +208,11 @@ class TextReport {
     out_ += fmt::format("{}Frames{}:\n", text::kIndent,
                         node == kNobody ? "" : " of " + text::harmless(scene_->name(node)));
     for (const std::size_t i : rows) {
-      const check::Place& place = story_.run.seen[i].place;
+      const check::Observation& seen = story_.run.seen[i];
+      const check::Place& place = seen.place;
       std::string where = fmt::format("{} {:>5}", i == at ? '>' : ' ', place.frame);
       if (story_.run.files.size() > 1) where += fmt::format(" of {}", place.file + 1);
-      where += fmt::format("  offset {}", place.offset_bytes);
+      where += fmt::format("  {} {}", seen.node.empty() ? "offset" : "line", place.offset_bytes);
       if (place.time_us >= 0) where += fmt::format(", {} s", text::seconds_text(place.time_us));
       out_ += fmt::format("{}{}, {}\n", text::kIndent, where, text::harmless(scene_->route(i)));
       constexpr std::string_view kDeep = "             ";
