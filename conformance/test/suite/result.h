@@ -44,8 +44,8 @@ struct CaseRun {
   bool foreign = false;
   std::string ruled_out;  ///< What is stated and keeps the case from being run: "members=8".
   /// It had to be decided and was not: the case is not foreign, and the file does not
-  /// list it as skipped. At the own line of a node, which names what the line cannot show, only where
-  /// that lost or doubled something.
+  /// list it as skipped. At the own line of a node, which names what the line cannot show, only
+  /// where that lost or doubled something.
   bool owed = false;
   bool whole = false;  ///< Its log has all that its nodes got and did, in virtual time.
   double wall_ms = 0;
