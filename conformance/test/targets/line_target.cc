@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <future>
 #include <iterator>
+#include <thread>
 #include <utility>
 
 #include "codec/generated/rubicon/app_msg.h"
@@ -30,6 +31,7 @@ constexpr lines::Milliseconds kQuietMax{2000};      // A node that never pauses 
 constexpr lines::Milliseconds kAnswerMax{350};      // 300 ticks, and the way.
 constexpr lines::Milliseconds kNodeStartMax{3000};  // For a node to start behind a new line.
 constexpr lines::Milliseconds kAskAgain{500};
+constexpr lines::Milliseconds kAcceptAgain{5};
 constexpr std::uint16_t kAskedSeqNum = 0xFFF0;
 constexpr lines::Milliseconds kAskApp{5};     // How often the app is asked for news.
 constexpr Ticks kStepTicks = 5;               // For several nodes that go on together.
@@ -312,8 +314,17 @@ std::unique_ptr<runner::Target> LineAttachment::target() {
 
 void NodeLine::open() {
   const bool starts = node.comes_to_us && (!opened || node.restarts);
-  const auto timeout = starts ? options.start_timeout : options.step_timeout;
-  if (line->open(steady_clock::now() + timeout)) is_new = true;
+  const lines::SteadyTime end =
+      steady_clock::now() + (starts ? options.start_timeout : options.step_timeout);
+  while (true) {
+    try {
+      if (line->open(end)) is_new = true;
+      break;
+    } catch (const TargetBroken&) {  // Who looks only whether anybody listens is not the node.
+      if (!node.comes_to_us || steady_clock::now() + kAcceptAgain >= end) throw;
+      std::this_thread::sleep_for(kAcceptAgain);
+    }
+  }
   opened = true;
 }
 

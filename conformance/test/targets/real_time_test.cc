@@ -189,10 +189,15 @@ TEST(RealTime, BaseStationThatConnects) {
 TEST(RealTime, BaseStationThatIsStartedAnew) {
   const std::uint16_t port = free_port();
   const auto attachment = attach(fmt::format("sf-server:{}:restart", port), kOptions);
+  // A script that starts the node may look first whether the port is open.
+  std::thread script([port] {
+    lines::connect_tcp({"127.0.0.1", port}, steady_clock::now() + kOptions.step_timeout);
+  });
   const RealNode station(forwarder_to(port), config_of(machine::Role::kBaseStation, 11));
   for (int round = 0; round < 3; ++round) {
     expect(CaseVerdict::kPass, *attachment, "base_station.ack");
   }
+  script.join();
   EXPECT_EQ(station.lives(), 3);
 }
 
