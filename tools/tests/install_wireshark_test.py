@@ -302,6 +302,35 @@ class Install(Base):
                 self.assertEqual(re.findall(r"\w+ at \d+(?=:)", said), notes)
             self.assertIn("!!", "".join(info for info, _ in found))
 
+    def test_names_that_a_protocol_that_ships_has_for_other_things(self):
+        spec = self.folder / "mine.ksy"
+        spec.write_text("meta: {id: mine, endian: be, encoding: ASCII}\ntypes:\n"
+                        "  time_sync_msg:\n    -am-type: 100\n    seq:\n"
+                        "      - {id: root_id, type: strz}\n      - {id: node_id, type: part(2)}\n"
+                        "      - {id: seq_num, type: u4}\n"
+                        "  part: {params: [{id: n, type: u1}], seq: [{id: bytes, size: n}]}\n",
+                        encoding="utf-8")
+        self.install("--spec", spec)
+        found, _ = self.told(spec, [self.packet(b"ABC\0\7\0\0\0\0\x09")])
+        said = 'time_sync_msg root_id="ABC" node_id{bytes=0700} seq_num=9'
+        self.assertEqual(found, [[said, ""]])
+        for name, path in (("mine", self.folder / "packets.pcapng"),
+                           ("TinyOS time synchronization (FTSP)", self.ftsp())):
+            done = run("tshark", "-r", path, "-O", "rubric", "-o", f"rubric.protocol:{name}",
+                       env=self.environment)
+            self.assertNotIn("Lua Error", done.stdout)
+            self.assertRegex(done.stdout, "(?m)^ +root_id: (ABC|7)$")
+            self.assertRegex(done.stdout, "(?m)^ +seq_num: 9$")
+
+    def ftsp(self):
+        """A capture of one message of the protocol that ships."""
+        capture = self.folder / "ftsp.pcapng"
+        payload = bytes((0, 7, 0, 3, 9)) + bytes(4) + b"\x3e" + bytes(4)
+        text = self.folder / "ftsp.hex"
+        text.write_text((b"\0\xff\xff\0\2\x0e\x22\x3d" + payload).hex(), encoding="utf-8")
+        run(RUBRIC, "convert", text, "-o", capture, "--spec", "ftsp")
+        return capture
+
     def test_a_copy_of_what_ships_beside_the_file(self):
         """It is read in place of the one that ships, whether they differ or not."""
         wire = ROOT / "spec/wire"

@@ -48,10 +48,22 @@ local function define_mask(field, abbreviation)
   end
 end
 
+local shapes = {}  -- What the field of each name holds.
+
+-- The name of a field. Protocols may use one name for things that no field of Wireshark's can both
+-- hold: the second one is told apart.
+local function name_of(field, prefix)
+  local abbreviation = prefix .. "." .. field.name
+  local shape = field.cases and "bytes" or field.text and "text" or field.bits and "uint4" or
+      field.kind .. (field.width or "")
+  shapes[abbreviation] = shapes[abbreviation] or shape
+  return shapes[abbreviation] == shape and abbreviation or abbreviation .. "_" .. shape
+end
+
 local define_message, define_parts
 
 local function define_field(field, prefix)
-  local abbreviation = prefix .. "." .. field.name
+  local abbreviation = name_of(field, prefix)
   if field.kind == "mask" then
     define_mask(field, abbreviation)
   elseif field.kind == "float" then
@@ -114,12 +126,15 @@ define_message = function(type)
   define_parts(type, abbreviation)
 end
 
-local function define_all()
-  for _, protocol in ipairs(protocols) do
-    for _, name in pairs(protocol.carriers) do
-      for _, field in ipairs(types[name]) do define_field(field, "rubric") end
-    end
+local function define_protocol(protocol)
+  for _, name in pairs(protocol.carriers) do
+    for _, field in ipairs(types[name]) do define_field(field, "rubric") end
   end
+end
+
+local function define_all()
+  define_protocol(protocols[usual_protocol])
+  for _, protocol in ipairs(protocols) do define_protocol(protocol) end
   for _, field in ipairs(types[serial_frame]) do
     define_field(field, "rubric.serial")
   end
@@ -192,7 +207,7 @@ end
 show = function(tree, node, prefix, view)
   local field = node.field
   if node.offset < view.skipped then return end  -- Another dissector has shown it.
-  local abbreviation = prefix .. "." .. field.name
+  local abbreviation = name_of(field, prefix)
   if node.kind == "number" then
     add_number(tree, abbreviation, field, node, view)
   elseif node.kind == "numbers" then
