@@ -167,7 +167,7 @@ class Flatten {
 // Frames are named by their payload; that a whole frame was understood is only of interest to
 // `decode`.
 bool decode_as(const reflect::Type& type, const AmFrame& frame, Concrete& out) {
-  thread_local Decoded decoded;
+  Decoded decoded;  // A thread's own would end the process where memory for its end is missing.
   const Bytes bytes(frame.payload.data(), frame.payload.size());
   decoded.clear(bytes);
   reflect::decode(type, bytes, reflect::Tail::kStale, true, decoded);
@@ -179,7 +179,6 @@ bool decode_as(const reflect::Type& type, const AmFrame& frame, Concrete& out) {
     out.size_rule = type.requirement;
   }
   Flatten(decoded, out).run();
-  decoded.clear({});
   return true;
 }
 

@@ -129,35 +129,39 @@ class Faults(testing.Folder):
         step = max(1, all_of_them // PLACES) if call == "malloc" else 1  # Spread over all of them.
         return range(1, all_of_them + 1, step), good, timeless(self.old.read_bytes())
 
+    def fails_at_each_place(self, words, call, failure, tried):
+        numbers, good, whole = self.places(words, call)
+        for number in numbers:
+            what = (words[:2], call, number)
+            self.old.write_bytes(OLD)
+            done = self.run_with(words, call, number, failure)
+            tried[call] = tried.get(call, 0) + 1
+            self.assertGreaterEqual(done.returncode, 0, (what, done.stderr))
+            now = timeless(self.old.read_bytes())
+            if b"the search ended early: more memory" in done.stdout:
+                # What was found by then is told, and that it may not be all.
+                self.assertEqual(done.returncode, good.returncode, what)
+            elif done.returncode == good.returncode:
+                # What failed was not needed, or was done in another way.
+                self.assertEqual(timeless(done.stdout), timeless(good.stdout), what)
+                if words[0] != "check" or now != whole:
+                    self.assertEqual(len(now), len(whole), (what, done.stderr))
+            else:
+                self.assertNotEqual(done.returncode, 0, what)
+                if "--each" in words and now != OLD:  # It tells of each run what broke.
+                    self.assertEqual(now.count(b"\n"), whole.count(b"\n"), what)
+                else:
+                    self.assertIn(now, (OLD, whole), (what, done.stderr))
+                self.assertTrue(done.stderr or call == "malloc", what)
+            left = sorted(path.name for path in self.folder.iterdir())
+            self.assertEqual(left, ["count", "old"], what)
+
     def test_files(self):
         tried = {}
         for words in SESSIONS:
             for call, failure in FAILURES.items():
-                numbers, good, whole = self.places(words, call)
-                for number in numbers:
-                    what = (words[:2], call, number)
-                    self.old.write_bytes(OLD)
-                    done = self.run_with(words, call, number, failure)
-                    tried[call] = tried.get(call, 0) + 1
-                    self.assertGreaterEqual(done.returncode, 0, (what, done.stderr))
-                    now = timeless(self.old.read_bytes())
-                    if b"the search ended early: more memory" in done.stdout:
-                        # What was found by then is told, and that it may not be all.
-                        self.assertEqual(done.returncode, good.returncode, what)
-                    elif done.returncode == good.returncode:
-                        # What failed was not needed, or was done in another way.
-                        self.assertEqual(timeless(done.stdout), timeless(good.stdout), what)
-                        if words[0] != "check" or now != whole:
-                            self.assertEqual(len(now), len(whole), (what, done.stderr))
-                    else:
-                        self.assertNotEqual(done.returncode, 0, what)
-                        if "--each" in words and now != OLD:  # It tells of each run what broke.
-                            self.assertEqual(now.count(b"\n"), whole.count(b"\n"), what)
-                        else:
-                            self.assertIn(now, (OLD, whole), (what, done.stderr))
-                        self.assertTrue(done.stderr or call == "malloc", what)
-                    left = sorted(path.name for path in self.folder.iterdir())
-                    self.assertEqual(left, ["count", "old"], what)
+                with self.subTest(words=words, call=call):
+                    self.fails_at_each_place(words, call, failure, tried)
         for call in FAILURES:
             self.assertGreater(tried[call], 5, call)
 
