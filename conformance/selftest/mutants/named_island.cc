@@ -231,6 +231,25 @@ void add_island_id(Mutants& out) {
         moment.honest();
         if (!joining && moment.is(Role::kSink)) moment.state.island = island;
       }));
+  add(out, "sends_from_the_island_before",
+      "A sink that starts again sends from the island that it was told before.",
+      {"N3-LOCAL"_rule, "N1-SRC"_rule},
+      remembering<std::uint16_t>([](Moment& moment, std::uint16_t& before) {
+        if (!moment.is(Role::kSink)) return moment.honest();
+        if (std::holds_alternative<machine::Reboot>(moment.event)) before = moment.state.island;
+        const bool sends = before != 0 && moment.called<Send>() != nullptr;
+        const std::uint16_t island = moment.state.island;
+        if (sends) moment.state.island = before;
+        moment.honest();
+        if (sends) moment.state.island = island;
+      }));
+  add(out, "island_outlives_a_reboot", "A sink that starts again has the island that it was told.",
+      {"J3-ADDRESS"_rule}, always([](Moment& moment) {
+        const std::uint16_t island = moment.state.island;
+        moment.honest();
+        const bool anew = std::holds_alternative<machine::Reboot>(moment.event);
+        if (anew && moment.is(Role::kSink)) moment.state.island = island;
+      }));
   add(out, "config_of_another_type_obeyed", "Any config message sets the island id.",
       {"N9-OTHER"_rule}, edit_heard(am::kConfig, [](Moment&, Forged& forged) {
         forged.bytes[config::kType] = config::kSetIslandId;

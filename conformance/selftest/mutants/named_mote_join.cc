@@ -293,6 +293,13 @@ void add_acceptance(Mutants& out) {
         const std::uint32_t start = moment.state.clock_offset_ms;
         clock.ms = start + (clock.ms - start) % kRoundMs;
       }));
+  add(out, "clock_of_its_own_after_a_reboot", "A mote that starts again keeps its own clock.",
+      {"J4-CLOCK"_rule}, remembering<bool>([](Moment& moment, bool& again) {
+        again = again || std::holds_alternative<machine::Reboot>(moment.event);
+        const std::uint32_t offset_ms = moment.state.clock_offset_ms;
+        moment.honest();
+        if (again && moment.heard(am::kJoinReply)) moment.state.clock_offset_ms = offset_ms;
+      }));
   add(out, "clock_stands", "A mote's clock stays at cur_time.", {"J4-CLOCK"_rule},
       on_told([](Moment& moment, const Action&, Notice& notice) {
         auto* const clock = std::get_if<machine::Clock>(&notice);

@@ -437,17 +437,18 @@ class Run {
   }
 
   void judge_outputs(CaseResult& result) {
+    Ticks since = now_;  // Nothing that counts from what is missing comes before.
     for (const Missing& one : missing_) {
+      since = std::min(since, one.wide.from);
       const Line& line = *one.timed.line;
       NearestMiss miss =
           node_of(line)->nearest_miss(line, one.wide, one.wide.to + kLateTicks, bindings_);
       fail(result, line, one.timed.window, one.wide.to, std::move(miss.text), miss.evidence);
-      // An output that differs broke the line when it came: what another line says of the same
-      // output must not come first and take the blame.
+      // It was broken then: what another line says of the same output must not take the blame.
       if (miss.time) result.failures.back().broken_at = *miss.time;
       refusals_.blame(line, result.failures.back());
     }
-    for (const Line* line : skipped_) allowed_.push_back({line, {0, now_}, 0});
+    for (const Line* l : skipped_) allowed_.push_back({l, {names_lost(*l) ? 0 : since, now_}, 0});
     for (const Timed& one : allowed_) {
       NodeLog& node = *node_of(*one.line);
       node.allow(*one.line, widened(node, one), bindings_);

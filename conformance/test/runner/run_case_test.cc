@@ -419,6 +419,11 @@ TEST(RunCase, GoesOnAfterAMissingOutput) {
                          "a+0..50 m5 ?> app clock(ms=300)\n@0..900 m5 !> app clock(ms=300)\n",
                          {200, 300})),
             (Failed{{5, false}}));
+  // What came before its window is not theirs.
+  EXPECT_EQ(lines_of(run("@0..99 m5 !> app clock(*)\na: @100..150 m5 > app clock(ms=1)\n"
+                         "a+1..900 m5 ?> app clock(*)\n",
+                         {60})),
+            (Failed{{5, false}, {6, true}}));
   // A stimulus that needs its variable ends the case,
   EXPECT_EQ(lines_of(run("a: 0..50 m5 > app clock(ms=$t)\n"
                          "@90 m5 < app write_output(channel=5->1 pos=0 value=$t)\n"
