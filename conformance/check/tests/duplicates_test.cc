@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <string>
+
 #include "conformance/check/input/read.h"
 #include "conformance/check/observation.h"
 #include "conformance/check/tests/must_read.h"
@@ -113,14 +116,15 @@ TEST(Duplicates, LinesOfTwoSinksAreTwoLines) {
   EXPECT_EQ(run.seen.size(), size);
 }
 
-TEST(Duplicates, ALogBesideACaptureHasNoFrames) {
+TEST(Duplicates, ANodeHasOneLogAndTheFramesOfACaptureBesideIt) {
   constexpr const char* kLog = R"(%rtr 1  %profile paper  %tick us
-%node m2 mote id=2
+%node m2 mote id=2 whole
 
 case log
    @0 m2 < app join(type=1 transducers=1 actuators=1)
    @1000 m2 > rA am=2->1 join_request(seq_num=5 mote_type=1 transducers=1 actuators=1)
 )";
+  const auto logged = [](const Observation& seen) { return !seen.node.empty(); };
   for (const bool capture : {false, true}) {
     RunReader reader;
     std::string error;
@@ -136,9 +140,16 @@ case log
       if (!seen.node.empty()) seen.place.time_us += 5'000'000;
     }
     error = error_of(run);
-    EXPECT_NE(error.find(capture ? "log:6: frames on the air" : "again: what node m2"),
+    if (!capture) {
+      EXPECT_EQ(error.find("again: what node m2 did is in log as well"), 0U) << error;
+      continue;
+    }
+    EXPECT_EQ(error, "");
+    EXPECT_EQ(std::ranges::count_if(run.seen, logged), 1) << "Its call, not its frame.";
+    EXPECT_FALSE(run.nodes.front().whole || run.nodes.front().hearing);
+    EXPECT_NE(run.facts.back().find("log: its frames on the air are left out, as "),
               std::string::npos)
-        << capture << ": " << error;
+        << run.facts.back();
   }
 }
 
