@@ -120,6 +120,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   Packet packet;
   decode_record(record, record.size() + missing, link_type, "WIRE-PCAP"_rule, packet);
   require(packet.offset_bytes + packet.bytes.size() <= record.size(), "a frame lies in its record");
+  if (packet.framing == Framing::kBare) {
+    require(link_type == kLinkRadioTap && packet.error.fault != Fault::kNone,
+            "a record has no radio frame where its header cannot be read");
+    return 0;
+  }
   const Kept kept(packet);
   check_sum(kept, record.size());
   if (missing != 0 || link_type == kLinkRadioNoFcs) {
