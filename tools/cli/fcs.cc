@@ -39,7 +39,9 @@ void FcsGuess::take(const Packet& packet) {
   if (packet.link_type == kLinkRadioFcs && packet.cut_by_capture()) {
     ++(lacks_fcs_alone(packet) ? left_out_ : cut_);
   }
-  if (is_whole_without_fcs(packet)) take_without(packet);
+  if (is_whole_without_fcs(packet) && !is_again(packet.bytes)) {
+    ++(ends_with_fcs(packet.bytes) ? extra_ : without_);
+  }
   if (!has_fcs(packet)) return;
   if (packet.error.fault == Fault::kNone) {
     ++sound_;
@@ -57,10 +59,6 @@ bool FcsGuess::is_again(Bytes bytes) {
   if (std::equal(bytes.begin(), bytes.end(), last_.begin(), last_.end())) return true;
   last_.assign(bytes.begin(), bytes.end());
   return false;
-}
-
-void FcsGuess::take_without(const Packet& packet) {
-  if (!is_again(packet.bytes)) ++(ends_with_fcs(packet.bytes) ? extra_ : without_);
 }
 
 bool FcsGuess::is_extra() const { return extra_ >= kExtraMin && without_ * 50 <= extra_; }

@@ -41,7 +41,6 @@ class FcsGuess {
 
  private:
   bool is_again(Bytes bytes);
-  void take_without(const Packet& packet);
 
   std::uint64_t sound_ = 0;
   std::uint64_t alike_ = 0;

@@ -117,7 +117,7 @@ class KnownList {
  private:
   void take(const ImplementationRun& implementation, const CaseRun& one) {
     const std::string target = run_.implementations.size() > 1 ? implementation.target : "";
-    const bool lacks = one.owed && !one.result.damaged;  // What was damaged is to be run again.
+    const bool lacks = one.owed && !one.result.damaged;  // Run it again.
     if (lacks || (one.undecided() && !one.expected_reason.empty())) {
       std::vector<std::string>& cases =
           undecided_[{what_was_missing(one.result.reason), one.expected_reason, target}];

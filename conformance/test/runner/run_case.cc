@@ -444,7 +444,8 @@ class Run {
       NearestMiss miss =
           node_of(line)->nearest_miss(line, one.wide, one.wide.to + kLateTicks, bindings_);
       fail(result, line, one.timed.window, one.wide.to, std::move(miss.text), miss.evidence);
-      // It was broken then: what another line says of the same output must not take the blame.
+      // An output that differs broke the line when it came: what another line says of the same
+      // output must not come first and take the blame.
       if (miss.time) result.failures.back().broken_at = *miss.time;
       refusals_.blame(line, result.failures.back());
     }
@@ -469,7 +470,7 @@ class Run {
         });
   }
 
-  // What was lost or doubled on the way can cause all that is wrong, and hide what is.
+  // A packet that was lost or doubled on the way can cause any failure, and can hide one.
   void mind_damage(CaseResult& result) {
     const auto crashed = [](const Failure& failure) { return failure.crash; };
     if (result.verdict > CaseVerdict::kFail) return;

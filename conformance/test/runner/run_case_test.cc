@@ -419,7 +419,7 @@ TEST(RunCase, GoesOnAfterAMissingOutput) {
                          "a+0..50 m5 ?> app clock(ms=300)\n@0..900 m5 !> app clock(ms=300)\n",
                          {200, 300})),
             (Failed{{5, false}}));
-  // What came before its window is not theirs.
+  // Lines that count from the missing one take no output from before its window.
   EXPECT_EQ(lines_of(run("@0..99 m5 !> app clock(*)\na: @100..150 m5 > app clock(ms=1)\n"
                          "a+1..900 m5 ?> app clock(*)\n",
                          {60})),

@@ -219,7 +219,7 @@ TEST(RealTime, SerialLineThroughTcp) {
   expect(CaseVerdict::kPass, *attachment, "sink.ack");
 }
 
-// What is lost or doubled on the way is no node's fault, and no node's merit.
+// A packet that is lost or doubled on the way says nothing about the node.
 TEST(RealTime, ADamagedSerialLineDecidesNothing) {
   const std::uint16_t port = free_port();
   std::unique_ptr<MoteEnd> end = mote_at(port);
