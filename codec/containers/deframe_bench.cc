@@ -148,15 +148,6 @@ void deframe_bytewise(benchmark::State& state) {
   state.SetItemsProcessed(static_cast<std::int64_t>(good));
 }
 
-template <std::uint16_t (*kCrc)(Bytes, std::uint16_t)>
-void crc_alone(benchmark::State& state) {
-  std::vector<std::uint8_t> frame(static_cast<std::size_t>(state.range(0)), 0x5A);
-  for (auto _ : state) {
-    benchmark::DoNotOptimize(kCrc(Bytes(frame.data(), frame.size()), 0));
-  }
-  state.SetBytesProcessed(state.iterations() * state.range(0));
-}
-
 constexpr std::int64_t kCached = 256 * 1024;       // Lies in the L2 cache.
 constexpr std::int64_t kLarge = 64 * 1024 * 1024;  // Lies in no cache.
 
@@ -175,9 +166,6 @@ BENCHMARK(deframe<CpuPath::kWide>)->Apply(sizes);
 BENCHMARK(deframe<CpuPath::kVector>)->Apply(sizes);
 BENCHMARK(deframe<CpuPath::kPortable>)->Apply(sizes);
 BENCHMARK(deframe_bytewise)->Apply(sizes);
-BENCHMARK(crc_alone<crc16_wide>)->Arg(123)->Arg(16384);
-BENCHMARK(crc_alone<crc16_vector>)->Arg(123)->Arg(16384);
-BENCHMARK(crc_alone<crc16_portable>)->Arg(123)->Arg(16384);
 
 }  // namespace
 }  // namespace rubric
