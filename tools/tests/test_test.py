@@ -9,6 +9,7 @@ import pathlib
 import re
 import shlex
 import signal
+import socket
 import subprocess
 import time
 import unittest
@@ -397,6 +398,22 @@ class Failing(Folder):
         self.assertEqual(test(*again, "--require-rules", "100")[0], 3)
         self.assertEqual(test(*again, "--write-expect", known)[0], 0)
         self.assertEqual(test(*again)[0], 0, "reasons are kept")
+
+    def test_what_the_app_of_a_line_refuses_is_not_green(self):
+        """The line may leave a case open; an app that answers `unsupported` has not decided it."""
+        app = f"{self.fake('unable', 'base_station')} | sed -u s/time=virtual/time=real/"
+        with socket.create_server(("127.0.0.1", 0)) as server:
+            port = server.getsockname()[1]
+        node = subprocess.Popen([RUBRIC, "run", "base-station", "--island", "11", "--sink",
+                                 f"sf@127.0.0.1:{port}"], stdin=subprocess.DEVNULL,
+                                stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        try:
+            self.shows(("test", "--target", f"sf-server:{port}", "--app", app, "--cases",
+                        "t1.base_station_line", "--cases", "t4.base_station_serial"),
+                       "1 pass, 1 skip", "1 case is neither decided nor listed", code=3)
+        finally:
+            node.terminate()
+            node.wait()
 
     def test_a_written_list_is_read_again(self):
         """Its comments are comments, however long a rule's sentence is."""

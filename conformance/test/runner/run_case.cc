@@ -69,6 +69,7 @@ class Run {
         result.failures.clear();
         result.verdict = CaseVerdict::kSkip;
         result.not_built = dynamic_cast<const NotBuilt*>(&error) != nullptr;
+        result.refused = dynamic_cast<const Refused*>(&error) != nullptr;
       }
       result.reason = error.what();
     } catch (const TargetBroken& error) {

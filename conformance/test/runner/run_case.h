@@ -61,6 +61,7 @@ struct CaseResult {
   std::string reason;            ///< Why it is inconclusive, skipped or an error.
   std::set<std::string> unseen;  ///< Links that it looks at and the target does not show.
   bool not_built = false;        ///< Skipped: the target cannot be what the case is for.
+  bool refused = false;          ///< Skipped: the program of the target answered `unsupported`.
   bool damaged = false;          ///< Inconclusive: what its line lost or doubled may decide it.
   Ticks length = 0;              ///< Virtual time that passed.
   trace::Case log;               ///< Everything that was given and came back.

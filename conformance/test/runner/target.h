@@ -38,6 +38,12 @@ class NotBuilt : public Unsupported {
   using Unsupported::Unsupported;
 };
 
+/// The implementation's own program answered that it does not do this.
+class Refused : public Unsupported {
+ public:
+  using Unsupported::Unsupported;
+};
+
 /// The part of a node that a target lets the runner see and do. A node behind a serial line shows
 /// only that line.
 struct Reach {

@@ -45,7 +45,7 @@ struct CaseRun {
   std::string ruled_out;  ///< What is stated and keeps the case from being run: "members=8".
   /// It had to be decided and was not: the case is not foreign, and the file does not list it as
   /// skipped. At a node's own line, which names what it cannot show, only where that line lost or
-  /// doubled something.
+  /// doubled something, or its application answered `unsupported`.
   bool owed = false;
   bool whole = false;  ///< Its log has all that its nodes got and did, in virtual time.
   double wall_ms = 0;

@@ -195,7 +195,8 @@ CaseRun run_one(const SuiteCase& one, targets::Attachment& attachment, const std
       out.foreign = true;
     }
     const targets::Identity& who = attachment.identity();
-    out.owed = out.undecided() && !out.foreign && (!who.own_line || out.result.damaged);
+    const bool owes = !who.own_line || out.result.damaged || out.result.refused;
+    out.owed = out.undecided() && !out.foreign && owes;
     out.whole = !who.own_line && !who.shown && !who.real_time;
   } catch (const std::bad_alloc&) {
     throw;                                 // Says nothing of the target.

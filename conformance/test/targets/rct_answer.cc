@@ -84,7 +84,7 @@ bool AnswerReader::take(std::string_view line) {
     return false;
   }
   if (word == "unsupported") {
-    throw runner::Unsupported(
+    throw runner::Refused(
         fmt::format("`{}`: {}", asked_.command, words.at_end() ? "unsupported" : words.rest()));
   }
   if (word == asked_.closing) {
