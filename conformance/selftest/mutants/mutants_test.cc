@@ -9,6 +9,7 @@
 
 #include "codec/reflect/requirements.h"
 #include "conformance/selftest/mutants/hunt.h"
+#include "conformance/test/suite/causes.h"
 #include "tools/tests/readme/number.h"
 
 namespace rubric::mutants {
@@ -101,6 +102,52 @@ TEST(Mutants, TheRightRuleIsBlamed) {
       named_there.rules, named_there.right, blamed.rules, blamed.right, hit, killed);
   EXPECT_GT(blamed.right * named_there.rules, named_there.right * blamed.rules);
   EXPECT_GT(blamed.right * 100, blamed.rules * 85);
+}
+
+// One mistake shows in cases of many rules. Half of the rules that are blamed there are not called
+// broken, and hardly ever is that of the mistake among them.
+TEST(Mutants, TheWholeSuiteCallsFewRulesBroken) {
+  constexpr std::size_t kEach = 12;  // Takes a third of a second for each mutant.
+  Blame blamed;
+  Blame broken;
+  std::size_t hit = 0;
+  std::size_t tried = 0;
+  const auto count = [](const suite::ImplementationRun& run, const Mutant& mutant, Blame& sum) {
+    std::size_t right = 0;
+    for (const suite::RequirementSummary& rule : suite::by_requirement(run)) {
+      if (rule.broken == 0) continue;
+      ++sum.rules;
+      right +=
+          std::ranges::find(mutant.requirements, rule.requirement) != mutant.requirements.end();
+    }
+    sum.right += right;
+    return right > 0;
+  };
+  for (std::size_t i = 0; i < named().mutants.size(); i += kEach) {
+    const Mutant& mutant = named().mutants[i];
+    if (!named().found[i].killed) continue;
+    suite::ImplementationRun all;
+    for (const CaseRef& ref : golden().cases()) {
+      suite::CaseRun& one = all.cases.emplace_back();
+      one.profile = "paper";
+      one.result = run(ref, mutant.factory());
+      if (one.result.failures.empty()) continue;
+      suite::compare_with_machine(ref.file->file, *ref.one, one);
+    }
+    count(all, mutant, blamed);
+    suite::find_causes(all);
+    ++tried;
+    const bool found = count(all, mutant, broken);
+    hit += found;
+    if (!found) std::printf("%s\n", mutant.name.c_str());
+  }
+  std::printf(
+      "%zu mutants: of %zu rules that failures blame %zu are theirs; of %zu called broken %zu; "
+      "%zu are called broken by a rule of theirs\n",
+      tried, blamed.rules, blamed.right, broken.rules, broken.right, hit);
+  EXPECT_GT(tried, 20U);
+  EXPECT_LT(broken.rules * 10, blamed.rules * 6);
+  EXPECT_GE(hit * 10, tried * 9);
 }
 
 // The nearest miss of a failure has the message that was expected, and is in its window.

@@ -40,10 +40,16 @@ Json counts(const VerdictCounts& counted) {
 }
 
 Json failure(const runner::Failure& one) {
-  return {
-      {"requirements", one.requirements}, {"suspected", one.suspected}, {"weak", one.weak},
-      {"implied", one.implied},           {"crash", one.crash},         {"line", one.place.line},
-      {"time_ticks", one.time},           {"expected", one.expected},   {"text", one.text}};
+  return {{"requirements", one.requirements},
+          {"suspected", one.suspected},
+          {"weak", one.weak},
+          {"implied", one.implied},
+          {"cause", one.cause},
+          {"crash", one.crash},
+          {"line", one.place.line},
+          {"time_ticks", one.time},
+          {"expected", one.expected},
+          {"text", one.text}};
 }
 
 Json requirement(const RequirementSummary& one) {

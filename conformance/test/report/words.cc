@@ -87,7 +87,8 @@ std::string headline(const CaseRun& one) {
   if (one.result.failures.empty()) return one.result.reason;
   const runner::Failure& first = one.result.failures.front();
   const std::string rules = rules_of(first);
-  std::string out = (rules.empty() ? "" : rules + ": ") + asked_text(first) + first.text;
+  const std::string cause = first.cause.empty() ? "" : ", perhaps of " + first.cause;
+  std::string out = (rules.empty() ? "" : rules + cause + ": ") + asked_text(first) + first.text;
   if (one.result.failures.size() > 1) {
     out += fmt::format(" (and {} more)", one.result.failures.size() - 1);
   }
@@ -107,7 +108,9 @@ std::string in_full(const CaseRun& one) {
     out += fmt::format("{}{}{}{}{}\n", place, rules.empty() ? "a line that names no rule" : rules,
                        suspected.empty() ? "" : ", suspected " + suspected,
                        failure.weak ? " (SHOULD)" : "",
-                       failure.implied ? " (implied by what is above)" : "");
+                       !failure.cause.empty() ? " (perhaps of " + failure.cause + ")"
+                       : failure.implied      ? " (implied by what is above)"
+                                              : "");
     for (const std::string& name : failure.requirements) {
       const ReqId id = trace::requirement_id(name);
       if (id == ReqId::kNone) continue;

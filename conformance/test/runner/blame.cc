@@ -73,6 +73,8 @@ void blame_one(Failure& failure, const Evidence& evidence) {
   rules.resize(1);
 }
 
+bool shows(std::string_view rule, const Evidence& evidence) { return fit(rule, evidence) == kWell; }
+
 void mark_implied(std::vector<Failure>& failures) {
   std::set<std::string, std::less<>> failed;  // Nodes.
   for (Failure& failure : failures) {

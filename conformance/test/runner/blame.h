@@ -33,6 +33,9 @@ using Evidence = std::set<std::string, std::less<>>;
 /// for.
 void blame_one(Failure& failure, const Evidence& evidence);
 
+/// Returns whether a break of the rule looks like this.
+bool shows(std::string_view rule, const Evidence& evidence);
+
 /// Marks the failures of each node that its first one implies. Failures are in the order in which
 /// the lines were broken.
 void mark_implied(std::vector<Failure>& failures);

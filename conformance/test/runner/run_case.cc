@@ -534,8 +534,10 @@ class Run {
                     .to = window.to,
                     .forbidden = line.op == Op::kMustNot,
                     .node = line.node,
-                    .broken_at = time};
+                    .broken_at = time,
+                    .message = line.message.name};
     blame_one(failure, evidence);
+    if (!evidence.contains("missing")) failure.symptom = evidence;
     result.verdict =
         std::max(result.verdict, failure.weak ? CaseVerdict::kWeak : CaseVerdict::kFail);
     result.failures.push_back(std::move(failure));

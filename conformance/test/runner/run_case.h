@@ -45,10 +45,16 @@ struct Failure {
   bool crash = false;
   std::string node = {};                    ///< The node under test, as the trace calls it.
   std::vector<std::string> suspected = {};  ///< Other rules that the line names.
-  bool implied = false;                     ///< An earlier failure of the node can be its cause.
+  bool implied = false;    ///< An earlier failure of the node, or another's rule, can be its cause.
+  std::string cause = {};  ///< That rule, which other failures of the run blame.
   /// When the node broke the line: when an output came that differs, else at `time`. Failures are
   /// in this order.
   Ticks broken_at = 0;
+  std::string message = {};  ///< That of the line.
+  /// What is wrong with one that came: the words of runner::Evidence. Empty if none came.
+  std::set<std::string, std::less<>> symptom = {};
+  /// Rules by which the reference machine did what the node did not, there or before.
+  std::set<std::string> left_undone = {};
 
   /// Returns all rules that the line names, the blamed one first.
   std::vector<std::string> rules() const;

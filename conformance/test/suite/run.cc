@@ -8,18 +8,15 @@
 #include <cstdint>
 #include <exception>
 #include <iterator>
-#include <map>
 #include <mutex>
 #include <new>
 #include <string_view>
 #include <thread>
-#include <unordered_map>
 #include <utility>
 
-#include "conformance/test/runner/subject_target.h"
 #include "conformance/test/suite/canary.h"
+#include "conformance/test/suite/causes.h"
 #include "conformance/trace/headers.h"
-#include "conformance/trace/protocol.h"
 
 namespace rubric::suite {
 namespace {
@@ -110,57 +107,6 @@ class PlanRun {
   std::size_t reported_ = 0;
 };
 
-// Whether it says no rule: a line of a set-up names none.
-bool is_nameless(const runner::Failure& failure) {
-  return failure.requirements.empty() && !failure.forbidden && !failure.crash;
-}
-
-// Gives nameless failures the rule by which the machine does what is missing; `right` is its run.
-void blame_as_machine(const runner::CaseResult& right, const trace::Case& one,
-                      std::vector<runner::Failure>& failures) {
-  std::unordered_map<std::uint32_t, const trace::Line*> kept;  // By their places in the file.
-  for (const trace::Line* line : one.lines()) kept.emplace(line->place.line, line);
-  for (const runner::Failure& its : right.failures) kept.erase(its.place.line);
-  // What it did by a rule, by node and message: the first of each time.
-  std::map<std::pair<std::string_view, std::string_view>,
-           std::map<std::int64_t, const trace::Line*>>
-      by_rule;
-  for (const trace::Line* did : right.log.lines()) {
-    if (did->op != trace::Op::kEmits || did->requirements.empty()) continue;
-    by_rule[{did->node, did->message.name}].emplace(did->time.from, did);
-  }
-  for (runner::Failure& failure : failures) {
-    const auto line = kept.find(failure.place.line);
-    if (!is_nameless(failure) || line == kept.end()) continue;
-    const auto all = by_rule.find({failure.node, line->second->message.name});
-    if (all == by_rule.end()) continue;
-    const std::int64_t from = failure.from;
-    auto nearest = all->second.lower_bound(from);
-    if (nearest != all->second.begin()) {
-      const auto before = std::prev(nearest);
-      const bool nearer =
-          nearest == all->second.end() || from - before->first <= nearest->first - from;
-      if (nearer) nearest = before;
-    }
-    failure.requirements.assign(1, nearest->second->requirements.front());
-  }
-}
-
-// Plays a case that failed with the machine, where its run says more: on which lines another
-// profile has it fail, too, and what nameless failures broke.
-void compare_with_machine(const trace::File& head, const trace::Case& one, CaseRun& out) {
-  const bool other = out.profile != "paper";
-  if (!trace::protocol().has_machine) return;
-  if (!other && std::ranges::none_of(out.result.failures, is_nameless)) return;
-  const runner::CaseResult right = runner::run_case(head, one, [](const trace::NodeHeader&) {
-    return std::make_unique<runner::SubjectTarget>(std::make_unique<runner::Machine>());
-  });
-  for (const runner::Failure& failure : right.failures) {
-    if (other) out.lines_of_profile.push_back(failure.place.line);
-  }
-  blame_as_machine(right, one, out.result.failures);
-}
-
 }  // namespace
 
 CaseRun run_one(const SuiteCase& one, targets::Attachment& attachment, const std::string& profile,
@@ -250,6 +196,7 @@ ImplementationRun run(const std::string& target, const MakeAttachment& make, con
   for (const std::exception_ptr& one : broken) {
     if (one) std::rethrow_exception(one);
   }
+  find_causes(out);
   out.outside = plan_run.outside();
   out.wall_ms = ms_since(start);
   return out;

@@ -94,7 +94,8 @@ function failureView(failure, run) {
     ? failure.requirements.map((id, i) => [i ? ' ' : '', ruleLink(id)])
     : asked ? 'A line without a rule' : 'It broke',
   failure.weak && h('span', { class: 'flag' }, 'SHOULD'),
-  failure.implied && h('span', { class: 'flag' }, 'implied')),
+  failure.cause ? h('span', { class: 'flag' }, 'perhaps of ', ruleLink(failure.cause))
+    : failure.implied && h('span', { class: 'flag' }, 'implied')),
   failure.requirements.map((id) => ruleOf(id) && h('p', {}, ruleOf(id).sentence)),
   h('dl', { class: 'facts' },
     asked && h('div', {},

@@ -193,6 +193,9 @@ std::string failure_text(const CaseRun& one, const Failure& failure, const TextO
     out += field("", fmt::format("after line {} of {}", failure.place.line, one.file), options);
   }
   out += field("Suspects:", joined(failure.suspected), options);
+  if (!failure.cause.empty()) {
+    out += field("Cause:", failure.cause + ", perhaps, which other cases show broken.", options);
+  }
   return out;
 }
 

@@ -7,6 +7,7 @@
 
 #include "codec/reflect/requirements.h"
 #include "conformance/test/suite/canary.h"
+#include "conformance/test/suite/causes.h"
 #include "conformance/test/suite/select.h"
 #include "conformance/test/suite/tests/testing.h"
 #include "conformance/trace/events/lines.h"
@@ -298,6 +299,45 @@ TEST(Results, RulesThatBroke) {
   EXPECT_TRUE(std::is_sorted(all.begin(), all.end(), [](const auto& a, const auto& b) {
     return reflect::CatalogueOrder()(a.requirement, b.requirement);
   }));
+}
+
+// The rule that explains most failures is broken, also if it was only left undone or named beside
+// another, or if other lines blame it for the same; what nothing explains is broken by itself.
+TEST(Results, ARuleThatExplainsMoreIsTheCause) {
+  ImplementationRun run;
+  const auto add = [&](const char* rule) {
+    runner::Failure& out = run.cases.emplace_back().result.failures.emplace_back();
+    out.requirements = {rule};
+    return &out;
+  };
+  add("T2-ACK");
+  add("T2-ACK");
+  runner::Failure& undone = *add("N11-NEXT");
+  undone.left_undone = {"T2-ACK", "J8-LIMIT"};
+  runner::Failure& beside = *add("N9-SET");
+  beside.suspected = {"T2-ACK"};
+  add("N10-ON")->left_undone = {"J8-LIMIT"};  // Which no failure blames.
+  for (const char* rule : {"J3-ONCE", "J3-ONCE", "T2-LOOP"}) {
+    runner::Failure& reply = *add(rule);
+    reply.message = "join_reply";
+    reply.symptom = {"radio", "join_reply", "new"};
+  }
+  for (const char* rule : {"N6-ONCE", "N6-ONCE", "N6-DELIVER"}) {  // Too many rules send data.
+    runner::Failure& data = *add(rule);
+    data.message = "net_msg";
+    data.symptom = {"radio", "net_msg", "new"};
+  }
+  find_causes(run);
+  EXPECT_EQ(undone.cause, "T2-ACK");
+  EXPECT_EQ(beside.cause, "T2-ACK");
+  std::vector<std::string> broken;
+  std::vector<std::string> suspected;
+  for (const RequirementSummary& rule : by_requirement(run)) {
+    (rule.broken > 0 ? broken : suspected).push_back(reflect::requirement(rule.requirement).id);
+  }
+  EXPECT_THAT(broken, ::testing::UnorderedElementsAre("T2-ACK", "N10-ON", "J3-ONCE", "N6-ONCE",
+                                                      "N6-DELIVER"));
+  EXPECT_THAT(suspected, ::testing::UnorderedElementsAre("N11-NEXT", "N9-SET", "T2-LOOP"));
 }
 
 // Cases of a role that the implementation plays, of another one, and of those that what it states

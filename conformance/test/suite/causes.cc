@@ -1,0 +1,157 @@
+#include "conformance/test/suite/causes.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <set>
+#include <string_view>
+#include <tuple>
+#include <unordered_map>
+
+#include "conformance/test/runner/blame.h"
+#include "conformance/test/runner/subject_target.h"
+#include "conformance/trace/protocol.h"
+
+namespace rubric::suite {
+namespace {
+
+using runner::Failure;
+
+// The rule by which a node does it, and a kind of output: node, link, message and TRANSID.
+using Kind = std::tuple<std::string_view, std::string_view, std::string_view, std::string_view>;
+using Done = std::map<Kind, std::vector<const trace::Line*>>;
+
+Done done_in(const trace::Case& log) {
+  Done out;
+  for (const trace::Line* line : log.lines()) {
+    if (line->op != trace::Op::kEmits) continue;
+    const trace::Value* const id = line->message.find("payload.trans_id");
+    const std::string_view trans_id = id ? std::string_view(id->text) : std::string_view();
+    out[{line->node, line->link, line->message.name, trans_id}].push_back(line);
+  }
+  return out;
+}
+
+// Adds the rules of what the machine did before this failure, and the node less often.
+void add_left_undone(const Done& right, const Done& own, Failure& failure) {
+  const auto until = [](const std::vector<const trace::Line*>& lines, runner::Ticks end) {
+    return std::ranges::count_if(lines, [&](const auto* one) { return one->time.from < end; });
+  };
+  for (const auto& [kind, lines] : right) {
+    if (std::get<0>(kind) != failure.node) continue;
+    const auto its = own.find(kind);
+    const std::ptrdiff_t done = its == own.end() ? 0 : until(its->second, failure.broken_at + 1);
+    for (std::ptrdiff_t i = done; i < until(lines, failure.from); ++i) {
+      const auto& rules = lines[static_cast<std::size_t>(i)]->requirements;
+      failure.left_undone.insert(rules.begin(), rules.end());
+    }
+  }
+}
+
+// Returns the line of the machine's log that does what the failed line asks for by a rule: that of
+// its node and message whose time is nearest. Null if there is none.
+const trace::Line* nearest(const trace::Case& log, const Failure& failure,
+                           std::string_view message) {
+  const trace::Line* out = nullptr;
+  const auto distance = [&](const trace::Line& line) {
+    return std::abs(line.time.from - failure.from);
+  };
+  for (const trace::Line* line : log.lines()) {
+    const bool does = line->op == trace::Op::kEmits && !line->requirements.empty() &&
+                      line->node == failure.node && line->message.name == message;
+    if (does && (!out || distance(*line) < distance(*out))) out = line;
+  }
+  return out;
+}
+
+// Returns in what a failure is like others, which may have the same cause: its message, and what is
+// wrong with it. Empty if that says nothing, as many rules let a node send data.
+std::string symptom_of(const Failure& failure) {
+  const runner::Evidence& seen = failure.symptom;
+  const bool data = seen.contains("received") || seen.contains("net_msg");
+  if (seen.empty() || (data && !seen.contains("differs"))) return {};
+  return fmt::format("{} {}", failure.message, fmt::join(seen, " "));
+}
+
+}  // namespace
+
+void compare_with_machine(const trace::File& head, const trace::Case& one, CaseRun& out) {
+  if (!trace::protocol().has_machine) return;
+  const runner::CaseResult right = runner::run_case(head, one, [](const trace::NodeHeader&) {
+    return std::make_unique<runner::SubjectTarget>(std::make_unique<runner::Machine>());
+  });
+  std::map<std::uint32_t, const trace::Line*> kept;  // By their places in the file.
+  for (const trace::Line* line : one.lines()) kept.emplace(line->place.line, line);
+  for (const Failure& its : right.failures) {
+    kept.erase(its.place.line);
+    if (out.profile != "paper") out.lines_of_profile.push_back(its.place.line);
+  }
+  const Done done = done_in(right.log);
+  const Done own = done_in(out.result.log);
+  for (Failure& failure : out.result.failures) {
+    add_left_undone(done, own, failure);
+    const auto line = kept.find(failure.place.line);
+    if (failure.forbidden || failure.crash || line == kept.end()) continue;
+    const trace::Line* const did = nearest(right.log, failure, line->second->message.name);
+    if (!did) continue;
+    if (failure.requirements.empty()) {
+      failure.requirements.assign(1, did->requirements.front());
+    } else if (failure.symptom.empty()) {
+      failure.left_undone.insert(did->requirements.front());
+    }
+  }
+}
+
+void find_causes(ImplementationRun& run) {
+  std::vector<Failure*> left;
+  std::map<std::string, std::size_t> blames;
+  std::map<std::string, std::set<std::string>> blamed_for;  // By symptom.
+  for (CaseRun& one : run.cases) {
+    for (Failure& failure : one.result.failures) {
+      if (failure.implied || failure.crash || failure.requirements.empty()) continue;
+      const std::string& rule = failure.requirements.front();
+      ++blames[rule];
+      if (std::string symptom = symptom_of(failure); !symptom.empty()) {
+        blamed_for[std::move(symptom)].insert(rule);
+      }
+      left.push_back(&failure);
+    }
+  }
+  const auto causes = [&](const Failure& failure) {
+    std::set<std::string> out = failure.left_undone;
+    for (std::string& rule : failure.rules()) out.insert(std::move(rule));
+    const auto alike = blamed_for.find(symptom_of(failure));
+    if (alike != blamed_for.end()) out.insert(alike->second.begin(), alike->second.end());
+    std::erase_if(out, [&](const std::string& rule) { return !blames.contains(rule); });
+    return out;
+  };
+  while (!left.empty()) {
+    // How many failures a rule explains, in how many it looks like this, and how many blame it.
+    std::map<std::string, std::tuple<std::size_t, std::size_t, std::size_t>> scores;
+    for (const Failure* failure : left) {
+      for (const std::string& rule : causes(*failure)) {
+        const bool looks =
+            failure->left_undone.contains(rule) || runner::shows(rule, failure->symptom);
+        auto& [explains, shown, blamed] = scores[rule];
+        ++explains;
+        shown += looks;
+        blamed = blames.at(rule);
+      }
+    }
+    const std::string best =
+        std::ranges::max_element(scores, {}, [](const auto& one) { return one.second; })->first;
+    std::erase_if(left, [&](Failure* failure) {
+      if (!causes(*failure).contains(best)) return false;
+      if (failure->requirements.front() != best) {
+        failure->cause = best;
+        failure->implied = true;
+      }
+      return true;
+    });
+  }
+}
+
+}  // namespace rubric::suite
