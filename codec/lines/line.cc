@@ -107,6 +107,7 @@ InputFormat Line::format() const {
 }
 
 void Line::open(lines::SteadyTime deadline) {
+  stream_.close();  // A device is not had twice.
   stream_ = address_.kind == Address::Kind::kSerial
                 ? lines::open_serial_device(address_.device, address_.baud)
                 : lines::connect_tcp(address_.at, deadline);

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <termios.h>
 
 #include <algorithm>
@@ -59,6 +60,10 @@ ByteStream open_serial_device(const std::string& path, std::uint32_t baud) {
   if (!device.is_open()) throw broken("cannot be opened");
   termios settings{};
   if (::tcgetattr(device.get(), &settings) != 0) throw broken("is not a serial line");
+  // Two readers would each get a part of the bytes. It ends with the descriptor.
+  if (::flock(device.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+    throw Broken(fmt::format("{}: is in use by another program; 'rubric forward' shares it", path));
+  }
   ::cfmakeraw(&settings);
   settings.c_cflag |= CLOCAL | CREAD;
   settings.c_cc[VMIN] = 1;  // A read without bytes is the end of the line, never an empty one.

@@ -1,12 +1,16 @@
 #include "codec/lines/serial.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <stdlib.h>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
 
 #include <chrono>
+#include <string>
 #include <vector>
 
+#include "codec/lines/broken.h"
 #include "codec/runtime/hdlc.h"
 
 namespace rubric::lines {
@@ -60,6 +64,23 @@ TEST_F(SerialLineTest, APacketAfterGarbageIsReceived) {
   for (int i = 0; i < 100 && !packet; ++i) packet = line_.receive(steady_clock::now());
   ASSERT_TRUE(packet);
   EXPECT_EQ(packet->bytes, (std::vector<std::uint8_t>{0, 1, 2}));
+}
+
+// Two readers of a device would each get a part of its bytes.
+TEST(SerialDeviceTest, HasOneProgram) {
+  const Descriptor far(::posix_openpt(O_RDWR | O_NOCTTY));
+  ASSERT_EQ(::grantpt(far.get()), 0);
+  ASSERT_EQ(::unlockpt(far.get()), 0);
+  const std::string path = ::ptsname(far.get());
+  ByteStream first = open_serial_device(path, 115200);
+  try {
+    open_serial_device(path, 115200);
+    FAIL();
+  } catch (const Broken& broken) {
+    EXPECT_EQ(broken.what(), path + ": is in use by another program; 'rubric forward' shares it");
+  }
+  first.close();
+  EXPECT_TRUE(open_serial_device(path, 115200).is_open());
 }
 
 }  // namespace

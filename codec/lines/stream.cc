@@ -181,6 +181,7 @@ bool StreamLine::open(SteadyTime deadline) {
       }
       return false;
     } catch (const Broken&) {  // It has gone since.
+      close();
     }
   }
   stream_ = connect_(deadline);

@@ -17,7 +17,7 @@ struct CaseUse {
 };
 
 /// By file, then as they stand there; each case once for a rule and a sign.
-inline constexpr std::array<CaseUse, 2760> kCaseUses{{
+inline constexpr std::array<CaseUse, 2770> kCaseUses{{
     {"after_set_island.base_station",
      "conformance/cases/after_set_island.rtr", "N9-SET"_rule, false},
     {"after_set_island.base_station",
@@ -916,6 +916,17 @@ inline constexpr std::array<CaseUse, 2760> kCaseUses{{
     {"j9.numbers_do_not_mix", "conformance/cases/j9.rtr", "J6-SEQ"_rule, true},
     {"j9.one_number_of_two", "conformance/cases/j9.rtr", "J3-REPLY"_rule, false},
     {"j9.one_number_of_two", "conformance/cases/j9.rtr", "J9-INTERLEAVE"_rule, false},
+    {"t1.learning_commands", "conformance/cases/learning_commands.rtr", "T1-DELIVER"_rule, false},
+    {"t1.learning_commands", "conformance/cases/learning_commands.rtr", "T1-DELIVER"_rule, true},
+    {"t1.learning_commands", "conformance/cases/learning_commands.rtr", "S6-STOPPED"_rule, true},
+    {"t1.learning_commands",
+     "conformance/cases/learning_commands.rtr", "T2-UNRELIABLE"_rule, true},
+    {"t2.learning_commands", "conformance/cases/learning_commands.rtr", "T1-DELIVER"_rule, false},
+    {"t2.learning_commands", "conformance/cases/learning_commands.rtr", "T2-ACK"_rule, false},
+    {"t2.learning_commands", "conformance/cases/learning_commands.rtr", "T2-CONTENT"_rule, false},
+    {"t2.learning_commands", "conformance/cases/learning_commands.rtr", "T1-DELIVER"_rule, true},
+    {"t2.learning_commands", "conformance/cases/learning_commands.rtr", "S6-STOPPED"_rule, true},
+    {"t2.learning_commands", "conformance/cases/learning_commands.rtr", "T2-ONCE"_rule, true},
     {"leaving.sink", "conformance/cases/leaving.rtr", "J3-REPLY"_rule, false},
     {"leaving.sink", "conformance/cases/leaving.rtr", "J6-ADD"_rule, false},
     {"leaving.sink", "conformance/cases/leaving.rtr", "J2-LISTED"_rule, true},

@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kColumnsMin = 60;
 constexpr std::size_t kColumnsMax = 120;
 constexpr std::size_t kColumnsDefault = 100;
-constexpr std::size_t kRowsMin = 10;
+constexpr std::size_t kRowsMin = 5;
 constexpr std::size_t kRowsDefault = 24;
 
 }  // namespace

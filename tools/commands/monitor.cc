@@ -103,7 +103,7 @@ class Screen {
     const std::size_t width = screen != 0 ? screen : cli::columns(0, STDOUT_FILENO);
     const std::size_t height = cli::rows(STDOUT_FILENO);
     std::vector<std::string> lines = board.table(run::wall_ms());
-    const std::size_t news = std::max<std::size_t>(3, height / 3);
+    const std::size_t news = height / 3;
     if (lines.size() + news + 2 > height) {
       const std::size_t more = lines.size() + news + 3 - height;
       lines.resize(lines.size() - more);

@@ -101,10 +101,35 @@ class Monitor(LiveTest):
         self.assertEqual((code, err), (1, ""))
         self.assertRegex(out, r"Check: fail, \d+ frames, \d+ finding")
 
-    def test_a_space(self):
+    def broker(self):
         port = held_port()
         broker = Broker(self, port.__enter__())
         self.addCleanup(port.__exit__, None, None, None)
+        return broker
+
+    def test_an_air_and_its_space(self):
+        """What both show is news once, and one frame."""
+        broker = self.broker()
+        _, air, serial = self.sink()
+        base = self.node("base-station", "--island", 11, "--sink", serial, "--space", broker.url,
+                         env={**os.environ, **USER})
+        base.waits_for(rb"(mqtt://\S+: connected)")
+        watch = self.started(air, broker.url, env={**os.environ, **USER})
+        watch.until("11:pc is online")
+        self.mote(5, air)
+        for _ in range(5):
+            watch.until("11:5 light")
+        before = watch.read.decode()
+        code, out, _ = watch.end()
+        self.assertEqual(code, 0)
+        seen = 5 + len(re.findall(r" 11:5 light", before + out))
+        readings = (base.read.decode() + base.end()[1]).count('"data":"23')
+        self.assertLess(seen, 1.5 * readings)
+        row = next(line for line in out.splitlines() if line.startswith("11:5 ")).split()
+        self.assertLessEqual(int(row[row.index("s") + 1]), readings + 1, "frames")
+
+    def test_a_space(self):
+        broker = self.broker()
         _, air, serial = self.sink()
         base = self.node("base-station", "--island", 11, "--sink", serial, "--space", broker.url,
                          "--gone-after", 2, env={**os.environ, **USER})
@@ -140,6 +165,9 @@ class Monitor(LiveTest):
 
     def test_a_narrow_terminal(self):
         self.draws(10, 40, rb"\x1b\[H[^\x1b]*NODE(?s:.*)11:5 +\d s")
+
+    def test_a_low_terminal(self):
+        self.draws(6, 60, rb"11:5 +\d s +5 ")
 
     def draws(self, rows, columns, pattern):
         _, air, _ = self.sink()

@@ -115,6 +115,14 @@ class IslandTest(LiveTest):
         base.waits_for(rb"(connected)")
         return sink, base, air
 
+    def judged(self, *files):
+        code, out, _ = rubric("check", *files, "--format", "json")
+        report = json.loads(out)
+        bad = [one["text"] for one in report["findings"]
+               if one["severity"] in ("fail", "weak", "stray")]
+        self.assertEqual((bad, code), ([], 0), files)
+        return report
+
 
 class Run(IslandTest):
     def test_an_island_keeps_the_rules(self):
@@ -144,14 +152,6 @@ class Run(IslandTest):
         for wanted in ("join_request", "join_reply", "ack_join", "mac_ack", "config"):
             self.assertIn(wanted, messages)
         self.assertIn("mote 3", self.passes(kept))
-
-    def judged(self, *files):
-        code, out, _ = rubric("check", *files, "--format", "json")
-        report = json.loads(out)
-        bad = [one["text"] for one in report["findings"]
-               if one["severity"] in ("fail", "weak", "stray")]
-        self.assertEqual((bad, code), ([], 0), files)
-        return report
 
     def islands(self, more="", knock="", loss=5):
         """Two islands with loss; the PC of island 12 opens the door of island 11."""

@@ -4,15 +4,74 @@
 Usage: run_troubles_test.py RUBRIC. All of it on this host's loopback.
 """
 
+import re
 import socket
+import struct
 import time
 import unittest
 
 from run_test import IslandTest
 from testing import ROOT
 
+LEARNING = 6
+STARTS, STOPS, CLOCK, OUTGOING, INCOMING, ANSWER, OUTPUT = 1, 2, 8, 9, 10, 23, 25
+
 
 class Troubles(IslandTest):
+    def test_a_channel_is_set_up_from_afar(self):
+        """The PC creates, starts and stops it by commands of the Learning Layer, which the
+        applications on mote and sink obey (decision 142)."""
+        hospital = ROOT / "conformance/node/examples/hospital.py"
+        kept = self.folder / "run.rtr"
+        run = self.started(self.write("islands.yaml", f"""
+islands:
+  - island: 11
+    radio: zep:0
+    serial: sf-server:0
+    sink_app: python3 {hospital} sink
+    motes:
+      - {{id: 2, app: python3 {hospital} mote}}
+"""), "--log", kept)
+        serial = run.waits_for(rb"(sf@127.0.0.1:\d+)\n")
+        base = self.started("base-station", "--island", "11", "--sink", serial, "--app", "-")
+        base.waits_for(rb"(connected)")
+        run.event("mote_joined", mote="11:2")
+        number = 0
+
+        def command(dest, data, reliable=True):
+            nonlocal number
+            number += 1
+            base.call("send", dest=dest, app_id=LEARNING, reliable=reliable,
+                      data=(data + struct.pack(">H", number)).hex())
+            # After what the sink had sent before.
+            base.event("received", src=dest, app_id=LEARNING,
+                       data=struct.pack(">BHB", ANSWER, number, 0).hex())
+
+        def data_come():
+            while not base.event("received", src="11:1")["data"].startswith(f"{OUTPUT:02x}01"):
+                pass
+
+        ends = struct.pack(">6H", 11, 2, 11, 1, 0, 0) + 2 * struct.pack(">B10H", 1, *10 * [7])
+        for dest, code in (("11:1", INCOMING), ("11:2", OUTGOING)):
+            command(dest, bytes([code]) + ends + b"\0")
+            command(dest, struct.pack(">BH", CLOCK, 250))
+        command("11:1", struct.pack(">BH", STARTS, 0))
+        for reliable in (True, False):
+            command("11:2", struct.pack(">BH", STARTS, 0), reliable)
+            data_come()
+            command("11:2", struct.pack(">BH", STOPS, 0), reliable)
+            time.sleep(0.6)
+        for node in (base, run):
+            self.assertEqual(node.end()[0], 0)
+        report = self.judged(kept)
+        exercised = {one["requirement"] for one in report["exercised"]}
+        self.assertLessEqual({"T1-DELIVER", "T2-ACK", "S2-CONTENT", "S2-SIGNAL"}, exercised)
+        # A channel speaks from a start to a stop, after which one message may have waited.
+        said = re.findall(r"mote11_2 +(?:< +app +(start|stop)_all|> +r1 .*(syn)_channel)",
+                          kept.read_text(encoding="utf-8"))
+        told = "".join(one or "D" for one, _ in said)
+        self.assertRegex(told, "^(startD+stopD?){2}$")
+
     def test_a_mote_that_its_base_station_does_not_hear_is_there(self):
         """One sends to its sink alone, one sends nothing; both are asked (decision 124)."""
         robot = ROOT / "conformance/node/examples/robot.py"

@@ -49,6 +49,7 @@ void Source::open(lines::SteadyTime now) {
   forwarded_ = make_reader(format, reader_options(name(), Direction::kOutbound));
   sent_ = make_reader(format, reader_options(name(), Direction::kInbound));
   if (options_.address.kind == lines::Address::Kind::kSerial) {
+    stream_.close();
     stream_ = lines::open_serial_device(options_.address.device, options_.address.baud);
     return up(now);
   }

@@ -20,7 +20,7 @@ import threading
 import time
 
 SINK, LEARNING = 1, 6
-START, CLOCK, OUTGOING, INCOMING, ANSWER, OUTPUT = 1, 8, 9, 10, 23, 25
+START, STOP, CLOCK, OUTGOING, INCOMING, ANSWER, OUTPUT = 1, 2, 8, 9, 10, 23, 25
 JOINED = 16  # What a sink reports of a new mote.
 RESULTS = ("channel_result", "op_result", "send_result", "input_value")
 
@@ -125,8 +125,8 @@ class Learner(Node):
         elif data[0] == CLOCK:
             milliseconds, = struct.unpack_from(">H", data, 1)
             self.call(done, call="set_time_step", clock=milliseconds * 1024 // 1000)
-        elif data[0] == START:
-            self.call(done, call="start_all")
+        elif data[0] in (START, STOP):
+            self.call(done, call="start_all" if data[0] == START else "stop_all")
 
     def done(self, number, result):
         self.answers[number] = struct.pack(">BHB", ANSWER, number, not result["success"])

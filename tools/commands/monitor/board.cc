@@ -19,6 +19,7 @@ using machine::Address;
 constexpr std::size_t kNodesMax = 4096;  // Anybody may write any address.
 constexpr std::size_t kLastMax = 100;
 constexpr std::uint16_t kSinkId = 1;
+constexpr std::int64_t kPublishedMs = 2000;  // By then the space has what a line has shown.
 
 std::string clock_text(std::int64_t now_ms) {
   return fmt::format("{:%H:%M:%S}", fmt::localtime(static_cast<std::time_t>(now_ms / 1000)));
@@ -112,10 +113,16 @@ void Board::joined(Address address, const machine::Descriptor& descriptor, std::
            now_ms);
 }
 
-void Board::read(Address address, Node& node, const std::string& data, std::int64_t now_ms) {
+void Board::read(Address address, Node& node, const std::string& data, bool by_space,
+                 std::int64_t now_ms) {
   std::string text = readings_text(data);
   if (text.empty()) return;
+  // What a line has shown, the base station publishes in the space.
+  const bool told = by_space != node.by_space && now_ms - node.told_ms < kPublishedMs;
+  if (told && text == node.readings) return;
   node.readings = std::move(text);
+  node.by_space = by_space;
+  node.told_ms = now_ms;
   add_news(fmt::format("{} {}", name_of(address), node.readings), now_ms);
 }
 
@@ -151,7 +158,7 @@ void Board::take(const check::Observation& seen, std::int64_t now_ms) {
   }
   if (!net.sound || net.trans_id != check::component::kConnless) return;
   const space::Mote mote = from->mote.value_or(space::Mote{});
-  read(net.src, *from, space::state_data(mote, net.app_id, net.body()), now_ms);
+  read(net.src, *from, space::state_data(mote, net.app_id, net.body()), false, now_ms);
 }
 
 void Board::take(const space::Tuple& tuple, std::int64_t now_ms) {
@@ -185,10 +192,10 @@ void Board::take(const space::Tuple& tuple, std::int64_t now_ms) {
   }
   if (key->kind == Kind::kState) {
     it->heard_ms = at_ms;
-    ++it->frames;
+    if (!it->on_line) ++it->frames;
     // What stays may be older than what was said of its going.
     if (!tuple.stays) set_gone(address, *it, false, "is heard again", now_ms);
-    return read(address, *it, tuple.data, now_ms);
+    return read(address, *it, tuple.data, true, now_ms);
   }
   if (!it->gone && !online && it->heard_ms == 0) it->heard_ms = at_ms;
   set_gone(address, *it, !online, online ? "is heard again" : "has gone", now_ms);

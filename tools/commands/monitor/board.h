@@ -42,6 +42,8 @@ class Board {
   struct Node {
     std::optional<space::Mote> mote;  // Its description, once it is known.
     std::string readings;
+    bool by_space = false;  // Who told them.
+    std::int64_t told_ms = 0;
     std::int64_t heard_ms = 0;
     std::uint64_t frames = 0;
     std::uint64_t repeats = 0;
@@ -56,7 +58,8 @@ class Board {
   Node* node(machine::Address address);
   void heard(machine::Address address, Node& node, std::int64_t now_ms);
   void joined(machine::Address address, const machine::Descriptor& descriptor, std::int64_t now_ms);
-  void read(machine::Address address, Node& node, const std::string& data, std::int64_t now_ms);
+  void read(machine::Address address, Node& node, const std::string& data, bool by_space,
+            std::int64_t now_ms);
   void set_gone(machine::Address address, Node& node, bool gone, const char* why,
                 std::int64_t now_ms);
 

@@ -247,10 +247,10 @@ class MqttSpace::Client {
       std::unique_lock lock(mutex_);
       if (!tried || result == MOSQ_ERR_CONN_LOST) say(mosquitto_strerror(result));
       if (!was_connected_ && (tls_failed_ || result == MOSQ_ERR_TLS)) {
-        broken_ =
-            name_ +
-            ": no TLS: its certificate is not trusted (ca= in --credentials), it asks for one "
-            "(cert=, key=), or nothing speaks TLS there";
+        broken_ = name_ +
+                  ": no TLS: its certificate is not trusted (ca= in --credentials) or names "
+                  "another host, "
+                  "it asks for one (cert=, key=), or nothing speaks TLS there";
       } else if (!was_connected_ && result == MOSQ_ERR_EAI) {
         broken_ = fmt::format("mqtt: {}: {}", host, mosquitto_strerror(result));
       }
