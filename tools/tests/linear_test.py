@@ -200,6 +200,8 @@ class Linear(Folder):
                            ("by address", "?> rA am=1->{1} *"),
                            ("by packet", "?> rA * | 00ffff000002000f{1:04x}"),
                            ("frames", "!> rA am(type=15 payload=x{1:04x})"),
+                           ("not kept, alike", "> rA join_reply(seq_num=40000..50000 ...)"),
+                           ("not forbidden, alike", "!> rA join_reply(island_addr=!11 ...)"),
                            ("others", "> rA ack_join(*)")):
             inputs = [(HEAD + "case c\n" + "".join(
                 f"3 {REQUEST.format(i)}\n" for i in range(n)) + "".join(

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 #include <string_view>
+#include <unordered_set>
 #include <utility>
 
 #include "conformance/generated/profiles.h"
@@ -190,7 +191,7 @@ Window NodeLog::given(Ticks now) {
   return given;
 }
 
-std::pair<std::size_t, std::size_t> NodeLog::in_window(const Window& window) const {
+NodeLog::Span NodeLog::in_window(const Window& window) const {
   if (!in_order_) return {0, seen_.size()};
   const std::vector<Output>& outputs = target_->outputs();
   const auto count = static_cast<std::ptrdiff_t>(seen_.size());
@@ -199,22 +200,20 @@ std::pair<std::size_t, std::size_t> NodeLog::in_window(const Window& window) con
                                      [](const Output& one, Ticks at) { return one.time < at; });
   const auto to = std::upper_bound(from, last, window.to,
                                    [](Ticks at, const Output& one) { return at < one.time; });
-  return {from - outputs.begin(), to - outputs.begin()};
+  return {static_cast<std::size_t>(from - outputs.begin()),
+          static_cast<std::size_t>(to - outputs.begin())};
 }
 
 template <class Find, class Test>
-const Output* NodeLog::first(const trace::Line& line, const Window& window, std::size_t begin,
-                             Find find, Test test) {
-  constexpr std::size_t kFew = 32;
+const Output* NodeLog::first(const trace::Line& line, const Window& window, Span span, Find find,
+                             Test test) {
   const std::vector<Output>& outputs = target_->outputs();
-  const auto [from, end] = in_window(window);
-  begin = std::max(begin, from);
   const auto is_it = [&](std::size_t i) {
     const Seen& seen = seen_[i];
     return !seen.taken && is_about(line, seen) && window.holds(outputs[i].time) && test(i);
   };
-  if (begin + kFew >= end) {
-    for (std::size_t i = begin; i < end; ++i) {
+  if (!span.has_many()) {
+    for (std::size_t i = span.begin; i < span.end; ++i) {
       if (is_it(i)) return &outputs[i];
     }
     return nullptr;
@@ -225,10 +224,43 @@ const Output* NodeLog::first(const trace::Line& line, const Window& window, std:
     index_.add(static_cast<std::uint32_t>(indexed_), seen.message, seen.link, seen.foreign);
   }
   const OutputIndex::Places places = find(index_);
-  for (auto at = std::ranges::lower_bound(places, begin); at != places.end() && *at < end; ++at) {
+  auto at = std::ranges::lower_bound(places, span.begin);
+  for (; at != places.end() && *at < span.end; ++at) {
     if (is_it(*at)) return &outputs[*at];
   }
   return nullptr;
+}
+
+// What no output matched, none of the same ones will: they are only taken, in turn. Only what binds
+// a variable changes what a line means.
+const Output* NodeLog::matching(const trace::Line& line, const Window& window,
+                                const trace::Bindings& bindings, bool in_turn) {
+  Span span = in_window(window);
+  Span nothing;
+  Span* none = &nothing;
+  if (span.has_many() && in_order_) {
+    std::string asked = trace::print(trace::Line{
+        .link = line.link, .am = line.am, .message = line.message, .bytes = line.bytes});
+    if (asked.find('$') != std::string::npos) asked += std::to_string(bindings.all().size());
+    none = &none_[in_turn][std::move(asked)];
+  }
+  if (none->begin <= span.begin && span.begin < none->end) span.begin = none->end;
+  if (none->begin < span.end && span.end <= none->end) span.end = none->begin;
+  if (span.begin >= span.end) return nullptr;
+  const Output* const output = first(
+      line, window, span, [&](const OutputIndex& index) { return index.like(line, bindings); },
+      [&](std::size_t i) {
+        const Seen& seen = seen_[i];
+        return (!in_turn || i >= next_[seen.order]) &&
+               trace::may_match(line.message, seen.message) &&
+               trace::compare(line, seen.message, bindings);
+      });
+  if (output != nullptr) span.end = place_of(*output);
+  if (none->begin < none->end && span.begin <= none->end && none->begin <= span.end) {
+    span = {std::min(span.begin, none->begin), std::max(span.end, none->end)};
+  }
+  if (span.end - span.begin >= none->end - none->begin) *none = span;
+  return output;
 }
 
 void NodeLog::take(const Output& output, const trace::Line& line) {
@@ -241,20 +273,12 @@ void NodeLog::take(const Output& output, const trace::Line& line) {
 
 const Output* NodeLog::take(const trace::Line& line, const Window& window,
                             trace::Bindings& bindings) {
-  const bool again = awaited_.line == &line && awaited_.window.from == window.from &&
-                     awaited_.window.to == window.to;
-  const Output* const output = first(
-      line, window, again ? awaited_.looked : 0,
-      [&](const OutputIndex& index) { return index.like(line, bindings); },
-      [&](std::size_t i) {
-        const Seen& seen = seen_[i];
-        return i >= next_[seen.order] && trace::may_match(line.message, seen.message) &&
-               trace::match(line, seen.message, bindings);
-      });
-  awaited_ = {&line, window, seen_.size()};
+  const Output* const output = matching(line, window, bindings, true);
   if (output == nullptr) return nullptr;
+  const Seen& seen = seen_[place_of(*output)];
+  trace::match(line, seen.message, bindings);
   take(*output, line);
-  next_[seen_[place_of(*output)].order] = place_of(*output) + 1;
+  next_[seen.order] = place_of(*output) + 1;
   return output;
 }
 
@@ -265,12 +289,7 @@ void NodeLog::allow(const trace::Line& line, const Window& window,
 
 const Output* NodeLog::forbidden(const trace::Line& line, const Window& window,
                                  const trace::Bindings& bindings) {
-  return first(
-      line, window, 0, [&](const OutputIndex& index) { return index.like(line, bindings); },
-      [&](std::size_t i) {
-        const trace::Concrete& message = seen_[i].message;
-        return trace::may_match(line.message, message) && trace::compare(line, message, bindings);
-      });
+  return matching(line, window, bindings, false);
 }
 
 NearestMiss NodeLog::nearest_miss(const trace::Line& line, const Window& window, Ticks latest,
@@ -287,6 +306,7 @@ NearestMiss NodeLog::nearest_miss(const trace::Line& line, const Window& window,
     miss.text =
         fmt::format("it came at {}, not from {} to {}", output->time, window.from, window.to);
   } else {
+    const Span span = in_window(window);
     std::size_t best = std::numeric_limits<std::size_t>::max();
     std::size_t looks = 0;
     const auto differ = [&](std::size_t i) {
@@ -307,8 +327,9 @@ NearestMiss NodeLog::nearest_miss(const trace::Line& line, const Window& window,
       return ++looks == kLooksMost;
     };
     first(
-        line, window, 0, [&](const OutputIndex& index) { return index.of_its_name(line); }, differ);
-    if (looks == 0 && first(line, window, 0, about, any) != nullptr) {
+        line, window, span, [&](const OutputIndex& index) { return index.of_its_name(line); },
+        differ);
+    if (looks == 0 && first(line, window, span, about, any) != nullptr) {
       miss.text = fmt::format("it emitted no {} there", line.message.name);
     }
   }

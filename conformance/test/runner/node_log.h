@@ -4,8 +4,9 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
-#include <unordered_set>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -81,24 +82,28 @@ class NodeLog {
     bool foreign = false;                // `*` does not mean it.
     const trace::Line* taken = nullptr;  // By this line, if by any.
   };
-  // What was looked for last, and the outputs that are known not to be it.
-  struct Awaited {
-    const trace::Line* line = nullptr;
-    Window window;
-    std::size_t looked = 0;
+  // The outputs from one to before another.
+  struct Span {
+    std::size_t begin = 0;
+    std::size_t end = 0;
+    bool has_many() const { return begin + 32 < end; }
   };
   /// Returns whether the line can be about this output: by its link, and as a message of the
   /// protocol where it says `*`.
   static bool is_about(const trace::Line& line, const Seen& seen);
   Window given(Ticks now);
-  /// Returns the first output that may be in the window, and what is behind the last one.
-  std::pair<std::size_t, std::size_t> in_window(const Window& window) const;
-  /// Returns the first output in the window from `begin` on that no line has taken, that `line` can
-  /// be about, and that passes `test`; null if there is none. Of many outputs it looks at those
-  /// that `find` returns.
+  /// Returns the outputs that may be in the window.
+  Span in_window(const Window& window) const;
+  /// Returns the first output of the span that no line has taken, that `line` can be about in this
+  /// window, and that passes `test`; null if there is none. Of many outputs it looks at those that
+  /// `find` returns.
   template <class Find, class Test>
-  const Output* first(const trace::Line& line, const Window& window, std::size_t begin, Find find,
+  const Output* first(const trace::Line& line, const Window& window, Span span, Find find,
                       Test test);
+  /// Returns the first output in the window that no line has taken and that the line matches, or
+  /// null; `in_turn`: of those whose turn it is.
+  const Output* matching(const trace::Line& line, const Window& window,
+                         const trace::Bindings& bindings, bool in_turn);
   void take(const Output& output, const trace::Line& line);
   std::size_t place_of(const Output& output) const {
     return static_cast<std::size_t>(&output - target_->outputs().data());
@@ -115,7 +120,8 @@ class NodeLog {
   bool in_order_ = true;           // Outputs are, in time.
   OutputIndex index_;              // Of the first outputs, but those taken.
   std::size_t indexed_ = 0;        // So many.
-  Awaited awaited_;
+  // Where nothing matches what a line asks, by its text: first of all outputs, then in turn.
+  std::unordered_map<std::string, Span> none_[2];
   std::set<std::string> links_;          // At which there are outputs of the protocol,
   std::set<std::string> foreign_links_;  // and others.
   std::vector<bool> again_;              // One for each output: another one said the same before.
