@@ -187,6 +187,29 @@ class Linear(Folder):
             f"3 {REQUEST.format(i & 0xFFFF)}\n0..2 sA > rA join_reply(seq_num=$q{i} ...)\n"
             for i in range(n)), (("test", "--target", "machine"),))
 
+    def test_lines_times_outputs(self):
+        """Lines that look for outputs of one message in a window that holds all of them."""
+        path = self.folder / "x.rtr"
+        least = 300
+        for name, line in (("not kept", "> rA join_reply(seq_num={1} ...)"),
+                           ("kept", "> rA join_reply(seq_num={0} ...)"),
+                           ("any", "> rA join_reply(*)"),
+                           ("forbidden", "!> rA join_reply(seq_num={0} ...)"),
+                           ("not forbidden", "!> rA join_reply(seq_num={1} ...)"),
+                           ("allowed", "?> rA join_reply(seq_num={1} ...)"),
+                           ("by address", "?> rA am=1->{1} *"),
+                           ("by packet", "?> rA * | 00ffff000002000f{1:04x}"),
+                           ("frames", "!> rA am(type=15 payload=x{1:04x})"),
+                           ("not kept, alike", "> rA join_reply(seq_num=40000..50000 ...)"),
+                           ("not forbidden, alike", "!> rA join_reply(island_addr=!11 ...)"),
+                           ("others", "> rA ack_join(*)")):
+            inputs = [(HEAD + "case c\n" + "".join(
+                f"3 {REQUEST.format(i)}\n" for i in range(n)) + "".join(
+                    f"@0..{4 * n} sA {line.format(i, i + 30000)}\n" for i in range(n))).encode()
+                      for n in (least, least * STEP)]
+            self.grows(name, ("test", "--target", "machine"), inputs, path, (0, 1),
+                       LINES_CPU_MOST, LINES_CPU_FLOOR_S)
+
     def test_many_nodes_and_links_with_lines(self):
         """In a log; a case has few, and the runner and a chart look for each among all."""
         self.is_linear("nodes", lambda n: HEAD + "".join(

@@ -11,9 +11,11 @@
 #include "conformance/generated/blame.h"
 #include "conformance/test/runner/blame.h"
 #include "conformance/test/runner/case_files.h"
+#include "conformance/test/runner/output_index.h"
 #include "conformance/test/runner/run_case.h"
 #include "conformance/test/runner/subject_target.h"
 #include "conformance/trace/headers.h"
+#include "conformance/trace/match.h"
 #include "conformance/trace/print.h"
 
 namespace rubric::runner {
@@ -67,6 +69,62 @@ TEST(GoldenCases, TheMachinePassesAll) {
   }
   EXPECT_GT(names.size(), 270U);
   std::printf("%zu golden traces\n", names.size());
+}
+
+// Returns the messages of a log's lines.
+std::vector<trace::Concrete> messages_of(const trace::Case& log, const trace::Scope& scope) {
+  std::vector<trace::Concrete> out;
+  for (const trace::Line* line : log.lines()) {
+    trace::AmFrame frame;
+    if (!line->bytes) {
+      out.push_back(trace::concrete(line->message));
+    } else if (trace::parse_packet(*line->bytes, frame)) {
+      out.push_back(trace::decode(frame, scope.link(line->link).value_or(LinkKind::kRadio)));
+    }
+  }
+  return out;
+}
+
+TEST(GoldenCases, AnIndexFindsAllThatALineMatchesAndLittleElse) {
+  constexpr std::size_t kMost = 30;  // Of a case; else this takes long.
+  std::size_t all = 0;
+  std::size_t looked = 0;
+  std::size_t matched = 0;
+  for (const trace::Parsed& file : load_cases("conformance/cases")) {
+    for (const trace::Case& one : file.file.cases) {
+      const CaseResult result = run_case(file.file, one, [](const trace::NodeHeader&) {
+        return std::make_unique<SubjectTarget>(std::make_unique<Machine>());
+      });
+      std::vector<trace::Concrete> messages =
+          messages_of(result.log, trace::scope_of(file.file, one));
+      messages.resize(std::min(messages.size(), kMost));
+      OutputIndex index;
+      for (std::uint32_t i = 0; i < messages.size(); ++i) index.add(i, messages[i], "rA", false);
+      trace::Bindings bindings;
+      for (const trace::Line* line : one.lines()) {
+        trace::Line at = *line;
+        at.link = "rA";
+        const OutputIndex::Places places = index.like(at, bindings);
+        const std::set<std::uint32_t> found(places.begin(), places.end());
+        all += messages.size();
+        looked += found.size();
+        const trace::Bindings before = bindings;
+        for (std::uint32_t i = 0; i < messages.size(); ++i) {
+          if (!trace::may_match(at.message, messages[i])) continue;
+          if (!trace::compare(at, messages[i], before)) continue;
+          ++matched;
+          EXPECT_TRUE(found.contains(i)) << one.name << ": " << trace::print(*line);
+          if (bindings.all().size() == before.all().size()) {
+            trace::match(at, messages[i], bindings);
+          }
+        }
+      }
+      for (std::uint32_t i = 0; i < messages.size(); ++i) index.remove(i, messages[i], "rA", false);
+      EXPECT_TRUE(index.like({.link = "*", .message = trace::Message::any()}, {}).empty());
+    }
+  }
+  EXPECT_LT(looked, matched + all / 10);
+  std::printf("%zu of %zu, %zu matched\n", looked, all, matched);
 }
 
 // Whoever breaks the line breaks one rule. Where it names several, what was seen tells which: each

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 #include <string_view>
+#include <unordered_set>
 #include <utility>
 
 #include "conformance/generated/profiles.h"
@@ -128,9 +129,12 @@ void NodeLog::read_outputs() {
     const Output& output = outputs[i];
     in_order_ = in_order_ && (i == 0 || outputs[i - 1].time <= output.time);
     trace::Concrete message = message_of(output);
-    std::string order = order_of(link_name(output), message.message);
-    seen_.push_back({std::move(message), link_name(output), std::move(order), is_foreign(output)});
+    const auto order = orders_.emplace(order_of(link_name(output), message.message), next_.size());
+    if (order.second) next_.push_back(0);
+    seen_.push_back(
+        {std::move(message), link_name(output), order.first->second, is_foreign(output)});
     const Seen& seen = seen_.back();
+    (seen.foreign ? foreign_links_ : links_).insert(seen.link);
     trace::Line line =
         output.is_frame
             ? trace::frame_line(output.time, name_, trace::Op::kEmits, seen.link, kind_of(output),
@@ -187,7 +191,7 @@ Window NodeLog::given(Ticks now) {
   return given;
 }
 
-std::pair<std::size_t, std::size_t> NodeLog::in_window(const Window& window) const {
+NodeLog::Span NodeLog::in_window(const Window& window) const {
   if (!in_order_) return {0, seen_.size()};
   const std::vector<Output>& outputs = target_->outputs();
   const auto count = static_cast<std::ptrdiff_t>(seen_.size());
@@ -196,102 +200,163 @@ std::pair<std::size_t, std::size_t> NodeLog::in_window(const Window& window) con
                                      [](const Output& one, Ticks at) { return one.time < at; });
   const auto to = std::upper_bound(from, last, window.to,
                                    [](Ticks at, const Output& one) { return at < one.time; });
-  return {from - outputs.begin(), to - outputs.begin()};
+  return {static_cast<std::size_t>(from - outputs.begin()),
+          static_cast<std::size_t>(to - outputs.begin())};
+}
+
+template <class Find, class Test>
+const Output* NodeLog::first(const trace::Line& line, const Window& window, Span span, Find find,
+                             Test test) {
+  const std::vector<Output>& outputs = target_->outputs();
+  const auto is_it = [&](std::size_t i) {
+    const Seen& seen = seen_[i];
+    return !seen.taken && is_about(line, seen) && window.holds(outputs[i].time) && test(i);
+  };
+  if (!span.has_many()) {
+    for (std::size_t i = span.begin; i < span.end; ++i) {
+      if (is_it(i)) return &outputs[i];
+    }
+    return nullptr;
+  }
+  for (; indexed_ < seen_.size(); ++indexed_) {
+    const Seen& seen = seen_[indexed_];
+    if (seen.taken) continue;
+    index_.add(static_cast<std::uint32_t>(indexed_), seen.message, seen.link, seen.foreign);
+  }
+  const OutputIndex::Places places = find(index_);
+  auto at = std::ranges::lower_bound(places, span.begin);
+  for (; at != places.end() && *at < span.end; ++at) {
+    if (is_it(*at)) return &outputs[*at];
+  }
+  return nullptr;
+}
+
+// What no output matched, none of the same ones will: they are only taken, in turn. Only what binds
+// a variable changes what a line means.
+const Output* NodeLog::matching(const trace::Line& line, const Window& window,
+                                const trace::Bindings& bindings, bool in_turn) {
+  Span span = in_window(window);
+  Span nothing;
+  Span* none = &nothing;
+  if (span.has_many() && in_order_) {
+    std::string asked = trace::print(trace::Line{
+        .link = line.link, .am = line.am, .message = line.message, .bytes = line.bytes});
+    if (asked.find('$') != std::string::npos) asked += std::to_string(bindings.all().size());
+    none = &none_[in_turn][std::move(asked)];
+  }
+  if (none->begin <= span.begin && span.begin < none->end) span.begin = none->end;
+  if (none->begin < span.end && span.end <= none->end) span.end = none->begin;
+  if (span.begin >= span.end) return nullptr;
+  const Output* const output = first(
+      line, window, span, [&](const OutputIndex& index) { return index.like(line, bindings); },
+      [&](std::size_t i) {
+        const Seen& seen = seen_[i];
+        return (!in_turn || i >= next_[seen.order]) &&
+               trace::may_match(line.message, seen.message) &&
+               trace::compare(line, seen.message, bindings);
+      });
+  if (output != nullptr) span.end = place_of(*output);
+  if (none->begin < none->end && span.begin <= none->end && none->begin <= span.end) {
+    span = {std::min(span.begin, none->begin), std::max(span.end, none->end)};
+  }
+  if (span.end - span.begin >= none->end - none->begin) *none = span;
+  return output;
+}
+
+void NodeLog::take(const Output& output, const trace::Line& line) {
+  const std::size_t place = place_of(output);
+  Seen& seen = seen_[place];
+  seen.taken = &line;
+  if (place >= indexed_) return;
+  index_.remove(static_cast<std::uint32_t>(place), seen.message, seen.link, seen.foreign);
 }
 
 const Output* NodeLog::take(const trace::Line& line, const Window& window,
                             trace::Bindings& bindings) {
-  const std::vector<Output>& outputs = target_->outputs();
-  const auto [begin, end] = in_window(window);
-  for (std::size_t i = begin; i < end; ++i) {
-    Seen& seen = seen_[i];
-    if (seen.taken || !is_about(line, seen) || !window.holds(outputs[i].time)) continue;
-    if (const auto next = next_.find(seen.order); next != next_.end() && i < next->second) continue;
-    if (!trace::may_match(line.message, seen.message)) continue;
-    if (!trace::match(line, seen.message, bindings)) continue;
-    seen.taken = &line;
-    next_[seen.order] = i + 1;
-    return &outputs[i];
-  }
-  return nullptr;
+  const Output* const output = matching(line, window, bindings, true);
+  if (output == nullptr) return nullptr;
+  const Seen& seen = seen_[place_of(*output)];
+  trace::match(line, seen.message, bindings);
+  take(*output, line);
+  next_[seen.order] = place_of(*output) + 1;
+  return output;
 }
 
 void NodeLog::allow(const trace::Line& line, const Window& window,
                     const trace::Bindings& bindings) {
-  if (const Output* output = forbidden(line, window, bindings)) {
-    seen_[static_cast<std::size_t>(output - target_->outputs().data())].taken = &line;
-  }
+  if (const Output* output = forbidden(line, window, bindings)) take(*output, line);
 }
 
 const Output* NodeLog::forbidden(const trace::Line& line, const Window& window,
-                                 const trace::Bindings& bindings) const {
-  const std::vector<Output>& outputs = target_->outputs();
-  const auto [begin, end] = in_window(window);
-  for (std::size_t i = begin; i < end; ++i) {
-    const Seen& seen = seen_[i];
-    if (seen.taken || !is_about(line, seen) || !window.holds(outputs[i].time)) continue;
-    if (!trace::may_match(line.message, seen.message)) continue;
-    if (trace::compare(line, seen.message, bindings)) return &outputs[i];
-  }
-  return nullptr;
+                                 const trace::Bindings& bindings) {
+  return matching(line, window, bindings, false);
 }
 
 NearestMiss NodeLog::nearest_miss(const trace::Line& line, const Window& window, Ticks latest,
-                                  const trace::Bindings& bindings) const {
-  const std::vector<Output>& outputs = target_->outputs();
-  std::size_t best = std::numeric_limits<std::size_t>::max();
+                                  const trace::Bindings& bindings) {
+  constexpr std::size_t kLooksMost = 100;
   NearestMiss miss{"it emitted nothing there", {"missing"}};
-  for (std::size_t i = 0; i < seen_.size(); ++i) {
-    const Seen& seen = seen_[i];
-    if (seen.taken || !is_about(line, seen) || outputs[i].time > latest) continue;
-    const bool in_time = window.holds(outputs[i].time);
-    const bool other = seen.message.message.name != line.message.name;
-    if (in_time && other && best == std::numeric_limits<std::size_t>::max()) {
+  const auto about = [&](const OutputIndex& index) { return index.about(line); };
+  const auto any = [](std::size_t) { return true; };
+  if (const Output* late = forbidden(line, window, bindings)) {
+    miss = {fmt::format("at {} it came before one that was to come first", late->time),
+            {"differs", "order"},
+            late->time};
+  } else if (const Output* output = forbidden(line, {0, latest}, bindings)) {
+    miss.text =
+        fmt::format("it came at {}, not from {} to {}", output->time, window.from, window.to);
+  } else {
+    const Span span = in_window(window);
+    std::size_t best = std::numeric_limits<std::size_t>::max();
+    std::size_t looks = 0;
+    const auto differ = [&](std::size_t i) {
+      const trace::Concrete& message = seen_[i].message;
+      if (message.message.name != line.message.name) return false;
+      const trace::Match match = trace::compare(line, message, bindings);
+      if (match.distance() < best) {
+        best = match.distance();
+        const Output& one = target_->outputs()[i];
+        miss = {fmt::format("nearest, at {}: {}: {}", one.time, text_of(one), match.text()),
+                {"differs"},
+                one.time};
+        if (is_ack(message.message)) miss.evidence.insert("ack");
+        for (const trace::Difference& each : match.differences) {
+          miss.evidence.insert(each.path.substr(0, each.path.find_first_of(". ")));
+        }
+      }
+      return ++looks == kLooksMost;
+    };
+    first(
+        line, window, span, [&](const OutputIndex& index) { return index.of_its_name(line); },
+        differ);
+    if (looks == 0 && first(line, window, span, about, any) != nullptr) {
       miss.text = fmt::format("it emitted no {} there", line.message.name);
     }
-    if (!trace::may_match(line.message, seen.message)) continue;
-    const trace::Match match = trace::compare(line, seen.message, bindings);
-    if (match ? false : other || !in_time) continue;
-    const std::size_t distance = match.distance() * 2 + (in_time ? 0 : 1);
-    if (distance >= best) continue;
-    best = distance;
-    if (match && in_time) {
-      miss = {fmt::format("at {} it came before one that was to come first", outputs[i].time),
-              {"differs", "order"},
-              outputs[i].time};
-    } else if (match) {
-      miss = {
-          fmt::format("it came at {}, not from {} to {}", outputs[i].time, window.from, window.to),
-          {"missing"}};
-    } else {
-      miss = {
-          fmt::format("nearest, at {}: {}: {}", outputs[i].time, text_of(outputs[i]), match.text()),
-          {"differs"},
-          outputs[i].time};
-      if (is_ack(seen.message.message)) miss.evidence.insert("ack");
-      for (const trace::Difference& one : match.differences) {
-        miss.evidence.insert(one.path.substr(0, one.path.find_first_of(". ")));
-      }
-    }
   }
-  const auto used = [&](const Seen& one) { return is_about(line, one); };
-  if (std::ranges::none_of(seen_, used)) miss.evidence.insert("unused");
+  const auto is_used = [&](const std::set<std::string>& links) {
+    return line.link == "*" ? !links.empty() : links.contains(line.link);
+  };
+  const bool used = is_used(links_) || (line.message.name != "*" && is_used(foreign_links_));
+  if (!used) miss.evidence.insert("unused");
   return miss;
 }
 
-Evidence NodeLog::evidence_of(const Output& output) const {
-  const std::size_t index = static_cast<std::size_t>(&output - target_->outputs().data());
-  const Seen& seen = seen_[index];
+Evidence NodeLog::evidence_of(const Output& output) {
+  const Seen& seen = seen_[place_of(output)];
   const trace::Message& message = seen.message.message;
   const auto text_at = [&](std::string_view path) {
     const trace::Value* value = message.find(path);
     return value ? value->text : std::string();
   };
-  const bool again = std::any_of(
-      seen_.begin(), seen_.begin() + static_cast<std::ptrdiff_t>(index),
-      [&](const Seen& one) { return one.link == seen.link && one.message.message == message; });
+  if (again_.size() != seen_.size()) {
+    again_.clear();
+    std::unordered_set<std::string> said;
+    for (const Output& one : target_->outputs())
+      again_.push_back(!said.insert(text_of(one)).second);
+  }
   return {std::string(output.is_frame ? trace::link_text(kind_of(output)) : "app"),
-          is_ack(message) ? "ack" : message.name, text_at("result"), again ? "again" : "new"};
+          is_ack(message) ? "ack" : message.name, text_at("result"),
+          again_[place_of(output)] ? "again" : "new"};
 }
 
 std::vector<Overlong> NodeLog::overlong() const {
@@ -307,8 +372,8 @@ std::vector<Overlong> NodeLog::overlong() const {
 }
 
 std::string NodeLog::text_of(const Output& output) const {
-  const std::size_t index = static_cast<std::size_t>(&output - target_->outputs().data());
-  return fmt::format("{} {}", seen_[index].link, trace::print(seen_[index].message.message));
+  const Seen& seen = seen_[place_of(output)];
+  return fmt::format("{} {}", seen.link, trace::print(seen.message.message));
 }
 
 }  // namespace rubric::runner

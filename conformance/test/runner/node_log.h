@@ -4,12 +4,15 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
 #include "conformance/test/runner/blame.h"
 #include "conformance/test/runner/expectation.h"
+#include "conformance/test/runner/output_index.h"
 #include "conformance/test/runner/target.h"
 #include "conformance/trace/concrete.h"
 
@@ -58,15 +61,16 @@ class NodeLog {
   void allow(const trace::Line& line, const Window& window, const trace::Bindings& bindings);
   /// Returns the first output that breaks a `!>` line, or null.
   const Output* forbidden(const trace::Line& line, const Window& window,
-                          const trace::Bindings& bindings) const;
-  /// Explains why no output was taken, by those until `latest`.
+                          const trace::Bindings& bindings);
+  /// Explains why no output was taken, by those until `latest`. Where many come in the window that
+  /// have the name of its message, the first ones tell how they differ.
   NearestMiss nearest_miss(const trace::Line& line, const Window& window, Ticks latest,
-                           const trace::Bindings& bindings) const;
+                           const trace::Bindings& bindings);
   /// Returns the outputs that are longer than their message, the first of each rule that gives
   /// its size.
   std::vector<Overlong> overlong() const;
   std::string text_of(const Output& output) const;
-  Evidence evidence_of(const Output& output) const;
+  Evidence evidence_of(const Output& output);
 
   int link_acks_to_come = 0;
 
@@ -74,25 +78,53 @@ class NodeLog {
   struct Seen {
     trace::Concrete message;
     std::string link;
-    std::string order;                   // What is in one order has the same text here.
+    std::size_t order = 0;               // What is in one order has the same number here.
     bool foreign = false;                // `*` does not mean it.
     const trace::Line* taken = nullptr;  // By this line, if by any.
+  };
+  // The outputs from one to before another.
+  struct Span {
+    std::size_t begin = 0;
+    std::size_t end = 0;
+    bool has_many() const { return begin + 32 < end; }
   };
   /// Returns whether the line can be about this output: by its link, and as a message of the
   /// protocol where it says `*`.
   static bool is_about(const trace::Line& line, const Seen& seen);
   Window given(Ticks now);
-  /// Returns the first output that may be in the window, and what is behind the last one.
-  std::pair<std::size_t, std::size_t> in_window(const Window& window) const;
+  /// Returns the outputs that may be in the window.
+  Span in_window(const Window& window) const;
+  /// Returns the first output of the span that no line has taken, that `line` can be about in this
+  /// window, and that passes `test`; null if there is none. Of many outputs it looks at those that
+  /// `find` returns.
+  template <class Find, class Test>
+  const Output* first(const trace::Line& line, const Window& window, Span span, Find find,
+                      Test test);
+  /// Returns the first output in the window that no line has taken and that the line matches, or
+  /// null; `in_turn`: of those whose turn it is.
+  const Output* matching(const trace::Line& line, const Window& window,
+                         const trace::Bindings& bindings, bool in_turn);
+  void take(const Output& output, const trace::Line& line);
+  std::size_t place_of(const Output& output) const {
+    return static_cast<std::size_t>(&output - target_->outputs().data());
+  }
   void read_outputs();
   std::string link_name(const Output& output) const;
 
   std::string name_;
   std::unique_ptr<Target> target_;
   std::map<machine::Link, std::string> link_names_;
-  std::vector<Seen> seen_;                   // One for each output of the target.
-  std::map<std::string, std::size_t> next_;  // By order: the output after the last taken one.
-  bool in_order_ = true;                     // Outputs are, in time.
+  std::vector<Seen> seen_;                               // One for each output of the target.
+  std::unordered_map<std::string, std::size_t> orders_;  // Their numbers.
+  std::vector<std::size_t> next_;  // By order: the output after the last taken one.
+  bool in_order_ = true;           // Outputs are, in time.
+  OutputIndex index_;              // Of the first outputs, but those taken.
+  std::size_t indexed_ = 0;        // So many.
+  // Where nothing matches what a line asks, by its text: first of all outputs, then in turn.
+  std::unordered_map<std::string, Span> none_[2];
+  std::set<std::string> links_;          // At which there are outputs of the protocol,
+  std::set<std::string> foreign_links_;  // and others.
+  std::vector<bool> again_;              // One for each output: another one said the same before.
   std::vector<LoggedLine> log_;
 };
 

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <numeric>
+
 #include "conformance/test/runner/subject_target.h"
 #include "conformance/trace/events/lines.h"
 #include "conformance/trace/parse.h"
@@ -139,6 +141,30 @@ INSTANTIATE_TEST_SUITE_P(
         fails("OutOfOrder", "@0..90 m5 > app clock(ms=60)\n@0..90 m5 > app clock(ms=30)\n",
               {30, 60}, "at 30 it came before one that was to come first")),
     [](const auto& row) { return std::string(row.param.name); });
+
+// Among so many it looks only at those that a line can mean.
+TEST(RunCase, JudgesALineAmongManyOutputs) {
+  std::vector<Ticks> times(300);
+  std::iota(times.begin(), times.end(), Ticks{1});
+  judge(passes("", "", {}), run("@300 m5 > app clock(ms=300)\n", times));
+  judge(passes("", "", {}),
+        run("@0..400 m5 > app clock(ms=$t)\n@0..400 m5 > app clock(ms=$t+70)\n", times));
+  judge(passes("", "", {}), run("@0..400 m5 ?> app clock(ms=270)\n@270 m5 !> app *\n", times));
+  judge(passes("", "", {}), run("@0..400 m5 > * *\n@0..400 m5 !> app clock(ms=1)\n", times));
+  judge(fails("", "", {}, "at 270 it emitted app clock(ms=270)"),
+        run("@0..400 m5 !> app clock(ms=270)\n", times));
+  judge(fails("", "", {}, "at 2 it emitted app clock(ms=2)"),
+        run("@0..400 m5 > * *\n@0..400 m5 !> * *\n", times));
+  judge(fails("", "", {}, "at 7 it came before one that was to come first"),
+        run("@0..400 m5 > app clock(ms=270)\n@0..400 m5 > app clock(ms=7)\n", times));
+  judge(fails("", "", {}, "it came at 7, not from 8 to 400"),
+        run("@8..400 m5 > app clock(ms=7)\n", times));
+  judge(fails("", "", {}, "nearest, at 8: app clock(ms=8): ms: expected 500, seen 8"),
+        run("@8..400 m5 > app clock(ms=500)\n", times));
+  judge(fails("", "", {}, "it emitted no joined there"),
+        run("@8..400 m5 > app joined(*)\n", times));
+  judge(fails("", "", {}, "it emitted nothing there"), run("@8..400 m5 > rA *\n", times));
+}
 
 // The ends of messages, whose numbers are those times: up to tick 50 none was acked.
 class Awaiting : public Ticker {
