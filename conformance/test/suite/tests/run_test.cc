@@ -306,9 +306,10 @@ TEST(Results, RulesThatBroke) {
 TEST(Results, ARuleThatExplainsMoreIsTheCause) {
   ImplementationRun run;
   const auto add = [&](const char* rule) {
-    runner::Failure& out = run.cases.emplace_back().result.failures.emplace_back();
-    out.requirements = {rule};
-    return &out;
+    CaseRun& one = run.cases.emplace_back();
+    one.requirements = {trace::requirement_id(rule)};
+    one.result.failures.emplace_back().requirements = {rule};
+    return &one.result.failures.front();
   };
   add("T2-ACK");
   add("T2-ACK");
