@@ -86,8 +86,8 @@ std::uint32_t crc32(Bytes bytes, std::size_t padding) {
 // Splits a frame with an FCS of 32 bits, which a packet has no room for: it is checked and taken
 // off. One that is too long stays whole, so that it is too long without an FCS, too.
 Error split_wide_frame(Bytes frame, Packet& packet) {
-  packet.bytes = frame;
-  if (frame.empty()) return fail(Fault::kEmpty, 0, "WIRE-RADIO-HEADER"_rule).error;
+  packet.bytes = frame.size() == kFcs32Bytes ? frame.first(0) : frame;
+  if (packet.bytes.empty()) return fail(Fault::kEmpty, 0, "WIRE-RADIO-HEADER"_rule).error;
   constexpr std::size_t kMost = kRadioFrameMax - kFcsBytes;
   if (frame.size() > kRadioFrameMax) {
     return fail(Fault::kTooLong, kMost, "WIRE-RADIO-LENGTH"_rule).error;
