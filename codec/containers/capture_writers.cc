@@ -1,6 +1,7 @@
 // Writers of capture files.
 #include <algorithm>
 
+#include "codec/containers/crc16_fast.h"
 #include "codec/containers/link_record.h"
 #include "codec/containers/pcapng_format.h"
 #include "codec/containers/serial_frame.h"
@@ -55,7 +56,14 @@ void close_block(std::size_t begin, std::string& out) {
 }
 
 bool has_fcs(const Packet& packet) {
-  return packet.fcs != kAbsent || packet.error.fault == Fault::kTooShort;
+  const Fault fault = packet.error.fault;
+  return packet.fcs != kAbsent || fault == Fault::kTooShort || fault == Fault::kFcs;
+}
+
+// Returns the FCS to write: one that does not fit where that is all that is known of it.
+std::uint64_t fcs_of(const Packet& packet) {
+  if (packet.fcs != kAbsent) return static_cast<std::uint64_t>(packet.fcs);
+  return fcs_fast(packet.bytes) ^ 0xFFFF;
 }
 
 // Returns whether a radio frame is written with what its sniffer states. A CC24xx trailer says it
@@ -96,8 +104,9 @@ void append_record(const Packet& packet, std::string& out) {
   if (packet.framing == Framing::kHdlc) return append_serial_content(packet, out);
   if (has_tap_header(packet)) append_tap_header(packet.radio, has_fcs(packet), out);
   out.append(reinterpret_cast<const char*>(packet.bytes.data()), packet.bytes.size());
-  if (packet.framing == Framing::kRadio && packet.fcs != kAbsent) {
-    put16(static_cast<std::uint64_t>(packet.fcs), out);
+  const bool short_of_one = packet.error.fault == Fault::kTooShort && packet.fcs == kAbsent;
+  if (packet.framing == Framing::kRadio && has_fcs(packet) && !short_of_one) {
+    put16(fcs_of(packet), out);
   }
 }
 

@@ -13,6 +13,7 @@ namespace rubric {
 namespace {
 
 constexpr std::size_t kFcsBytes = 2;
+constexpr std::size_t kFcs32Bytes = 4;
 constexpr Error kSound{Fault::kNone, 0, ReqId::kNone};
 
 enum class FcsType : std::uint8_t { kNone, kCrc16, kCrc32 };
@@ -62,14 +63,44 @@ Error read_tap(Bytes record, std::size_t* size, FcsType* fcs_type, RadioFacts& f
       if (value_size == 0) return tap_error(Fault::kTruncated, at);
       const std::uint8_t value = record[at + 4];
       if (value > 2) return tap_error(Fault::kUnexpected, at + 4);
-      if (value == 2) return tap_error(Fault::kUnsupported, at + 4);
       *fcs_type = static_cast<FcsType>(value);
+      facts.more = facts.more || *fcs_type == FcsType::kCrc32;
     }
     read_tap_fact(type, record.sub(at + 4, value_size), facts);
     // Values are padded to four bytes; some writers leave the last one's padding out.
     at = std::min(*size, at + 4 + (value_size + 3) / 4 * 4);
   }
   return kSound;
+}
+
+// The CRC-32 of Ethernet, bit by bit: few frames have it.
+std::uint32_t crc32(Bytes bytes, std::size_t padding) {
+  std::uint32_t crc = UINT32_MAX;
+  for (std::size_t i = 0; i < bytes.size() + padding; ++i) {
+    crc ^= i < bytes.size() ? bytes[i] : 0U;
+    for (int bit = 0; bit < 8; ++bit) crc = crc >> 1 ^ ((crc & 1) != 0 ? 0xEDB88320 : 0);
+  }
+  return ~crc;
+}
+
+// Splits a frame with an FCS of 32 bits, which a packet has no room for: it is checked and taken
+// off. One that is too long stays whole, so that it is too long without an FCS, too.
+Error split_wide_frame(Bytes frame, Packet& packet) {
+  packet.bytes = frame.size() == kFcs32Bytes ? frame.first(0) : frame;
+  if (packet.bytes.empty()) return fail(Fault::kEmpty, 0, "WIRE-RADIO-HEADER"_rule).error;
+  constexpr std::size_t kMost = kRadioFrameMax - kFcsBytes;
+  if (frame.size() > kRadioFrameMax) {
+    return fail(Fault::kTooLong, kMost, "WIRE-RADIO-LENGTH"_rule).error;
+  }
+  const Error wrong = fail(Fault::kFcs, frame.size(), "WIRE-RADIO-FCS"_rule).error;
+  if (frame.size() < kFcs32Bytes) return wrong;
+  packet.bytes = frame.first(frame.size() - kFcs32Bytes);
+  const std::uint32_t fcs = load_le32(packet.bytes.end());
+  // The standard sums fewer than four bytes with zeros behind; Wireshark and others do not.
+  const std::size_t size = packet.bytes.size();
+  const std::size_t padding = size < kFcs32Bytes ? kFcs32Bytes - size : 0;
+  if (fcs == crc32(packet.bytes, 0) || fcs == crc32(packet.bytes, padding)) return kSound;
+  return fail(Fault::kFcs, size, "WIRE-RADIO-FCS"_rule).error;
 }
 
 Error split_radio_frame(Bytes frame, bool has_fcs, Packet& packet) {
@@ -102,13 +133,16 @@ void decode_radio(Bytes record, std::uint16_t link_type, bool cut, Packet& packe
     packet.error = read_tap(record, &header, &fcs_type, packet.radio);
     if (packet.error.fault != Fault::kNone) {
       packet.radio = RadioFacts{};
-      // No frame is to be had of it.
-      if (cut || packet.error.fault == Fault::kUnsupported) packet.framing = Framing::kBare;
+      if (cut) packet.framing = Framing::kBare;  // No frame is to be had of it.
       return;
     }
     packet.offset_bytes += header;
     record = record.from(header);
     has_fcs = fcs_type == FcsType::kCrc16;
+    if (fcs_type == FcsType::kCrc32 && !cut) {
+      packet.error = split_wide_frame(record, packet);
+      return;
+    }
   }
   // Without its end a frame has no FCS, whatever the capture promises.
   packet.error = split_radio_frame(record, has_fcs && !cut, packet);

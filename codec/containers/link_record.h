@@ -42,9 +42,10 @@ inline constexpr std::size_t kRadioFrameMax = 127;  ///< FCS included.
 /// Reads the radio frame in `record`, which is whole: fills framing, bytes, fcs, error, and moves
 /// offset_bytes from the record's first byte to the frame control field. Faults: kEmpty, kTooShort
 /// (no room for the FCS), kTooLong, kFcs; for a TAP header kTruncated, kUnexpected (version, FCS
-/// type), kOutOfRange (length), kUnsupported (32-bit FCS), with offsets from the record's first
-/// byte. Does not guess what some sniffers put in place of the FCS. Source: IEEE 802.15.4-2006,
-/// sections 6.4.1 and 7.2.1; LINKTYPE_IEEE802_15_4_TAP.
+/// type), kOutOfRange (length), with offsets from the record's first byte. An FCS of 32 bits, which
+/// only a TAP header announces, is checked and left out: `fcs` is kAbsent, also with kFcs. Does not
+/// guess what some sniffers put in place of the FCS. Source: IEEE 802.15.4-2006, sections 6.4.1 and
+/// 7.2.1; IEEE 802.15.4-2015, section 7.2.11; LINKTYPE_IEEE802_15_4_TAP.
 void decode_radio_record(Bytes record, std::uint16_t link_type, Packet& packet);
 
 /// Returns whether a frame ends with the FCS of the bytes before.

@@ -60,7 +60,8 @@ class Encoder {
     if (!expr.floats) return evaluate(expr, from(in.base), in.params.data());
     const auto start_of = [&](int index) -> std::size_t {
       const auto i = static_cast<std::size_t>(index);
-      return i < in.starts.size() ? in.starts[i] - in.base : kNowhere;
+      const bool is_there = i < in.starts.size() && in.starts[i] != kNowhere;
+      return is_there ? in.starts[i] - in.base : kNowhere;
     };
     return evaluate_floating(expr, from(in.base), start_of, in.params.data());
   }
@@ -161,13 +162,14 @@ class Encoder {
     std::size_t used = 0;  // Members of the object that were taken.
     for (std::uint16_t i = 0; i < type.field_count; ++i) {
       const Field& f = type.fields[i];
-      if (floats) {
-        in.starts.push_back(out_.size() - f.shared_bytes());
-        measures_.expect(type, in, static_cast<std::uint16_t>(i + 1));
-      }
+      if (floats) in.starts.push_back(kNowhere);
       if (f.condition.count) {
         require_given(f.condition, in);
         if (!value_of(f.condition, in)) continue;
+      }
+      if (floats) {
+        in.starts.back() = out_.size() - f.shared_bytes();
+        measures_.expect(type, in, static_cast<std::uint16_t>(i + 1));
       }
       if (f.kind == Kind::kBytes && interpreted(type, i, object, in, limit)) {
         ++used;

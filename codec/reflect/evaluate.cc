@@ -39,6 +39,12 @@ std::int64_t apply(Op op, std::int64_t a, std::int64_t b) {
     case Op::kGe: return a >= b;
     case Op::kAnd: return a && b;
     case Op::kOr: return a || b;
+    case Op::kBitAnd: return a & b;
+    case Op::kBitOr: return a | b;
+    case Op::kBitXor: return a ^ b;
+    case Op::kShiftLeft:
+      return static_cast<std::int64_t>(static_cast<std::uint64_t>(a) << (b & 63));
+    case Op::kShiftRight: return a >> (b & 63);
     default: return 0;
   }
 }
@@ -71,6 +77,9 @@ std::int64_t evaluate(const Expr& expr, Bytes structure, const std::int64_t* par
       stack[top++] = params ? params[step.value] : 0;
     } else if (step.op == Op::kNot) {
       stack[top - 1] = !stack[top - 1];
+    } else if (step.op == Op::kSelect) {
+      top -= 2;
+      stack[top - 1] = stack[top - 1] ? stack[top] : stack[top + 1];
     } else {
       --top;
       stack[top - 1] = apply(step.op, stack[top - 1], stack[top]);

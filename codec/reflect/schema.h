@@ -53,7 +53,14 @@ enum class Op : uint8_t {
   kAnd,
   kOr,
   kNot,
-  kParam,  ///< Only in specs that are read at run time.
+  // Only in specs that are read at run time:
+  kParam,
+  kBitAnd,
+  kBitOr,
+  kBitXor,
+  kShiftLeft,
+  kShiftRight,
+  kSelect,  ///< Of three values the second, if the first is not zero, else the third.
 };
 /// Returns whether a step puts a number of the frame on the stack.
 constexpr bool is_load(Op op) { return op >= Op::kLoadU8 && op <= Op::kLoadLe32; }

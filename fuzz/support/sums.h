@@ -27,4 +27,14 @@ inline std::uint16_t fcs_by_definition(Bytes bytes) {
   return static_cast<std::uint16_t>(fcs);
 }
 
+/// The sum of Ethernet, bits in the same order.
+inline std::uint32_t crc32_by_definition(Bytes bytes) {
+  std::uint32_t sum = UINT32_MAX;
+  for (const std::uint8_t byte : bytes) {
+    sum ^= byte;
+    for (int bit = 0; bit < 8; ++bit) sum = (sum & 1) != 0 ? sum >> 1 ^ 0xEDB88320 : sum >> 1;
+  }
+  return ~sum;
+}
+
 }  // namespace rubric::fuzz

@@ -1,5 +1,6 @@
 // Property: the steps of an expression give the value of its tree, evaluated plainly, whatever the
 // bytes, even where it reads beyond their end.
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -45,6 +46,9 @@ std::int64_t meaning(Op op, std::int64_t a, std::int64_t b) {
     case Op::kGt: return a > b;
     case Op::kGe: return a >= b;
     case Op::kAnd: return a != 0 && b != 0;
+    case Op::kBitAnd: return a & b;
+    case Op::kBitOr: return a + b - (a & b);
+    case Op::kBitXor: return a + b - 2 * (a & b);
     default: return a != 0 || b != 0;
   }
 }
@@ -71,25 +75,34 @@ Meaning number(fuzz::Input& input, Bytes structure, std::vector<ExprStep>& steps
 }
 
 Meaning tree(fuzz::Input& input, Bytes structure, int depth, std::vector<ExprStep>& steps) {
-  constexpr std::array kOps = {Op::kAdd, Op::kSub, Op::kMul, Op::kDiv, Op::kMod, Op::kEq, Op::kNe,
-                               Op::kLt,  Op::kLe,  Op::kGt,  Op::kGe,  Op::kAnd, Op::kOr};
-  const std::size_t which = depth == 0 ? 0 : input.below(kOps.size() + 2);
+  constexpr std::array kOps = {Op::kAdd, Op::kSub,    Op::kMul,   Op::kDiv,   Op::kMod, Op::kEq,
+                               Op::kNe,  Op::kLt,     Op::kLe,    Op::kGt,    Op::kGe,  Op::kAnd,
+                               Op::kOr,  Op::kBitAnd, Op::kBitOr, Op::kBitXor};
+  const std::size_t which = depth == 0 ? 0 : input.below(kOps.size() + 3);
   if (which == 0) return number(input, structure, steps);
+  if (which == kOps.size() + 2 && depth >= 2) {  // Two values wait for the third.
+    const Meaning condition = tree(input, structure, depth - 2, steps);
+    const Meaning yes = tree(input, structure, depth - 2, steps);
+    const Meaning no = tree(input, structure, depth - 2, steps);
+    steps.push_back({Op::kSelect, 0});
+    return {condition.value != 0 ? yes.value : no.value, std::max(yes.most, no.most)};
+  }
   const Meaning a = tree(input, structure, depth - 1, steps);
-  if (which == 1) {
+  if (which == 1 || which == kOps.size() + 2) {
     steps.push_back({Op::kNot, 0});
     return {a.value == 0, 1};
   }
   const Meaning b = tree(input, structure, depth - 1, steps);
   Op op = kOps[which - 2];
   if (op == Op::kMul && a.most > kMost / b.most) op = Op::kLt;
-  if (op <= Op::kSub && a.most > kMost - b.most) op = Op::kGe;
+  const bool adds = op <= Op::kSub || op >= Op::kBitAnd;
+  if (adds && a.most > kMost / 2 - b.most / 2) op = Op::kGe;
   steps.push_back({op, 0});
-  const std::int64_t most = op == Op::kMul   ? a.most * b.most
-                            : op == Op::kMod ? b.most
-                            : op == Op::kDiv ? a.most + 1
-                            : op < Op::kEq   ? a.most + b.most
-                                             : 1;
+  const std::int64_t most = op == Op::kMul                      ? a.most * b.most
+                            : op == Op::kMod                    ? b.most
+                            : op == Op::kDiv                    ? a.most + 1
+                            : op < Op::kEq || op >= Op::kBitAnd ? a.most + b.most
+                                                                : 1;
   return {meaning(op, a.value, b.value), most};
 }
 

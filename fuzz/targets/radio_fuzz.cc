@@ -31,6 +31,20 @@ void check_sum(const Kept& kept, std::size_t record_size) {
       "a frame is sound where its FCS is that of its bytes");
 }
 
+// A frame that lost four bytes behind it lost its FCS of 32 bits.
+void check_wide_sum(Bytes record, const Kept& kept) {
+  const Fault fault = kept.packet.error.fault;
+  const std::size_t begin = kept.packet.offset_bytes;
+  const std::size_t size = kept.bytes.size();
+  if (begin + size + 4 != record.size() || (fault != Fault::kNone && fault != Fault::kFcs)) return;
+  std::string padded = kept.bytes;
+  padded.resize(size < 4 ? 4 : size);
+  const std::uint32_t sum = load_le32(record.end() - 4);
+  const bool fits = sum == fuzz::crc32_by_definition(testing::view(kept.bytes)) ||
+                    sum == fuzz::crc32_by_definition(testing::view(padded));
+  require(fits == (fault == Fault::kNone), "a frame is sound where its wide FCS is that of it");
+}
+
 unsigned little(const Kept& kept, std::size_t at) {
   const auto low = static_cast<std::uint8_t>(kept.bytes[at]);
   return static_cast<unsigned>(static_cast<std::uint8_t>(kept.bytes[at + 1])) << 8 | low;
@@ -71,6 +85,10 @@ void check_append(const Kept& kept) {
                 "WIRE-PCAP"_rule, again);
   Kept wanted = fuzz::placeless(kept);
   wanted.packet.link_type = link_type_of(packet);
+  if (packet.error.fault == Fault::kFcs && packet.fcs == kAbsent) {  // One of 32 bits.
+    require(again.fcs != kAbsent, "a wrong FCS that is not known is written as another wrong one");
+    wanted.packet.fcs = again.fcs;
+  }
   fuzz::require_same({fuzz::placeless(Kept(again))}, {wanted}, "a record reads back as the same");
 }
 
@@ -131,6 +149,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     require(packet.fcs == kAbsent, "a frame without its end has no FCS");
   } else if (link_type == kLinkRadioFcs && record.size() >= 2) {
     require(packet.fcs == load_le16(record.end() - 2), "the FCS is what the frame ends with");
+  }
+  if (missing == 0 && link_type == kLinkRadioTap && packet.fcs == kAbsent) {
+    check_wide_sum(record, kept);
   }
   check_append(kept);
 

@@ -54,6 +54,13 @@ enum class ExprOp {
   kAnd,
   kOr,
   kNot,
+  // Only at run time:
+  kBitAnd,
+  kBitOr,
+  kBitXor,
+  kShiftLeft,
+  kShiftRight,
+  kSelect,  // a ? b : c
 };
 struct Expr {
   ExprOp op = ExprOp::kInt;
@@ -177,6 +184,15 @@ struct MaskBit {
   bool unnamed = false;  // `-unnamed`
 };
 
+/// An instance that lies nowhere. It is not shown; where an expression reads it, what it is
+/// computed from is read.
+struct Computed {
+  std::string id;
+  std::string text;  // `value`; empty where the instance has none, or is there under a condition.
+  SourcePlace place;
+  std::string enum_name;
+};
+
 /// A value that a use of a type gives it: `type: part(length)`.
 struct Param {
   std::string id;
@@ -200,7 +216,7 @@ struct Type {
   std::vector<std::unique_ptr<Field>> fields;     // seq
   std::vector<std::unique_ptr<Field>> instances;  // peeks and interpretations, in order
   std::vector<Param> params;
-  std::vector<std::string> computed;          // Ids of instances that are passed over.
+  std::vector<Computed> computed;
   bool is_mask = false;                       // `-mask`: then only bits, from the highest bit down.
   std::vector<MaskBit> bits;                  // From the highest down; as many as `-mask` says.
   std::optional<std::int64_t> declared_size;  // `-size`: the greatest size.

@@ -124,6 +124,7 @@ class Comparer {
     if (isBytes(value)) {
       // A terminator is part of the bytes that rubric shows, and no part of Kaitai's.
       const hex = Buffer.from(value).toString('hex');
+      if (field.repeat) return this.same(given, value[0], where);  // One by one they are numbers.
       return this.same('terminator' in field && given === hex + '0a' ? hex : given, hex, where);
     }
     if (typeof value === 'boolean') return this.same(given, value ? 1 : 0, where);

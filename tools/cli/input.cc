@@ -55,7 +55,6 @@ std::string_view foreign_link_name(std::uint16_t link_type) {
     case 201: return " (Bluetooth HCI)";
     case 251:
     case 256: return " (Bluetooth Low Energy)";
-    case kLinkRadioTap: return " (TAP) with an FCS of 32 bits";
     default: return "";
   }
 }

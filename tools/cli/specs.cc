@@ -292,11 +292,11 @@ std::string dissector_with(const std::string& spec) {
                                    [&](const auto& one) { return one->id == spec; });
   const rubricc::Spec& usual = shipped ? **chosen : *model.specs.back();
   if (std::none_of(usual.types.begin(), usual.types.end(),
-                   [](const auto& type) { return type->carrier == "serial"; })) {
+                   [](const auto& type) { return rubricc::leads_to_messages(*type); })) {
     text::print(
         stderr,
-        "rubric: {}: no type has '-am-type' or '-carrier: serial', so no packet leads to its "
-        "messages\n",
+        "rubric: {}: no type has '-am-type' or '-carrier: serial', 'radio_i' or 'radio_t', so no "
+        "packet leads to its messages\n",
         spec);
     exit_with(kExitInput);
   }

@@ -102,7 +102,7 @@ void report(const Losses& losses, const std::string& container) {
     text::print(
         stderr,
         "rubric: {} of {} packets lost what their TAP headers say besides RSSI, link quality, "
-        "channel and time slot\n",
+        "channel and time slot, or their FCS of 32 bits\n",
         losses.more_facts, losses.written);
   }
   if (container == "hex" && losses.radio && losses.radio != losses.written) {

@@ -11,11 +11,13 @@ import resource
 import select
 import shutil
 import signal
+import struct
 import time
 import unittest
 
 from extcap_testing import EXTCAP, FORWARDER, PACKET, SERIAL, Base, decoded, run
 from live_testing import Forwarder
+from packets import radio
 from serial_testing import PATIENCE_S, Pty, hdlc, read_until, wait_for
 from specs_test import FLOATING, UNPROVED
 from testing import ROOT, RUBRIC
@@ -274,11 +276,49 @@ class Install(Base):
             rows = table.stdout.replace("\r", "").splitlines()[1:]
             self.assertEqual(done.stdout.splitlines(), rows)
 
+    def test_what_the_capture_cut_is_no_fault(self):
+        spec = self.folder / "lamp.ksy"
+        spec.write_text("meta: {id: lamp, endian: be}\ntypes:\n  light:\n    -am-type: 0x2a\n"
+                        "    seq: [{id: node, type: u2}, {id: level, type: u1}]\n")
+        self.install("--spec", spec)
+        frame = radio(1, 0xFFFF, 5, 0x2A, b"\0\5\x50")
+        head = struct.pack("<IHHIIII", 0xA1B2C3D4, 2, 4, 0, 0, len(frame) - 1, 230)
+        records = b"".join(struct.pack("<IIII", 0, 0, len(frame) - 1, size) + frame[:-1]
+                           for size in (len(frame), len(frame) - 1))
+        (self.folder / "cut.pcap").write_bytes(head + records)
+        done = run("tshark", "-r", self.folder / "cut.pcap", "-T", "fields", "-E", "separator=|",
+                   "-e", "rubric.fault", "-e", "_ws.col.Info", env=self.environment)
+        cut, short = (line.split("|") for line in done.stdout.splitlines())
+        self.assertEqual(cut, ["", f"light node=5 * cut by the capture ({len(frame) - 1} of "
+                                   f"{len(frame)} bytes)"])
+        self.assertEqual(short[0], "truncated")
+
+    def test_frames_on_the_radio_alone_with_a_header_of_their_own(self):
+        spec = self.folder / "tide.ksy"
+        carrier = ("meta: {id: tide, endian: be}\n-carrier: CARRIER\nseq:\n"
+                   "  - {id: fcf, type: u2le, valid: 0x8841}\n  - {id: dsn, type: u1}\n"
+                   "  - {id: pan, type: u2le}\n  - {id: dest, type: u2le}\n"
+                   "  - {id: src, type: u2le, valid: 5}\n  - {id: kind, type: u1}\n"
+                   "  - {id: payload, size-eos: true, type: {switch-on: kind, cases: {1: level}}}\n"
+                   "types: {level: {seq: [{id: millimetres, type: s2}]}}\n")
+        frame = radio(1, 0xFFFF, 5, 0, b"")[:9] + b"\1\xff\x38"
+        head = struct.pack("<IHHIIII", 0xA1B2C3D4, 2, 4, 0, 0, 65535, 230)
+        (self.folder / "tide.pcap").write_bytes(
+            head + struct.pack("<IIII", 0, 0, len(frame), len(frame)) + frame)
+        for name, shows in (("radio_t", "-200||"),
+                            ("serial", "||not_decoded: the protocol has no such frames")):
+            spec.write_text(carrier.replace("CARRIER", name))
+            self.install("--spec", spec)
+            done = run("tshark", "-r", self.folder / "tide.pcap", "-T", "fields", "-E",
+                       "separator=|", "-e", "rubric.level.millimetres", "-e", "rubric.fault", "-e",
+                       "_ws.expert.message", env=self.environment)
+            self.assertEqual((done.stdout.strip(), "Lua" in done.stderr), (shows, False))
+
     def test_what_varies_in_size(self):
         """Generated frames of plain Kaitai files: fields, faults and where notes are."""
-        for name, text in (("plain", KAITAI / "plain.ksy"), ("lists", KAITAI / "lists.ksy"),
-                           ("unproved", UNPROVED), ("floating", FLOATING)):
-            text = text if isinstance(text, str) else text.read_text(encoding="utf-8")
+        files = [(name, (KAITAI / f"{name}.ksy").read_text(encoding="utf-8"))
+                 for name in ("plain", "lists", "computed")]
+        for name, text in (*files, ("unproved", UNPROVED), ("floating", FLOATING)):
             text = re.sub("UTF-16LE|ISO-8859-15|windows-1252", "ASCII", text)
             spec = self.folder / f"{name}.ksy"
             spec.write_text(text, encoding="utf-8")

@@ -12,6 +12,7 @@ import struct
 import subprocess
 import tempfile
 import unittest
+import zlib
 
 from packets import fcs, interface, ipv4, packet_block, radio, section, udp
 from testing import ProgramTest, rubric
@@ -98,12 +99,18 @@ def some(make, count=60):
 
 
 WIFI = bytes.fromhex("00000800 00000000 d4000000 020202020202")
+def tap32(number):
+    header = struct.pack("<BBH", 0, 0, 12) + tlv(0, b"\2")
+    return header + frame(number) + struct.pack("<I", zlib.crc32(frame(number)))
+
+
 CAPTURES = {
     "dongle.pcap": pcap(195, some(with_fcs)),
     "cc24xx.pcap": pcap(195, some(trailer)),
     "big_endian_ns.pcap": pcap(230, some(frame), ">", True),
     "phy.pcap": pcap(215, some(phy)),
     "tap.pcapng": pcapng([283], [(0, record) for record in some(tap)]),
+    "tap32.pcap": pcap(283, some(tap32)),
     "any_zep.pcap": pcap(113, some(lambda n: sll(ipv4(udp(b"query", 53) if n % 5 == 4
                                                       else udp(zep(n)))))),
     "vlan_zep1.pcap": pcap(1, some(lambda n: ethernet(ipv4(udp(zep(n, 1)))))),
@@ -203,12 +210,31 @@ class Mixed(Captures):
         code, out, err = rubric("decode", alien)
         self.assertEqual((code, out, err.count("\n")), (NO_INPUT, "", 1))
         self.assertIn("2000 of 2000 packets", err)
-        wide = struct.pack("<BBH", 0, 0, 12) + tlv(0, b"\2")
-        alien.write_bytes(pcap(283, [wide + with_fcs(0) + b"??"] * 20 + [tap(0)]))
-        code, out, err = rubric("decode", alien)
-        self.assertEqual((code, out.count("\n")), (0, 1))
-        self.assertIn("link type 283 (TAP) with an FCS of 32 bits is not read: 20 of 21 packets "
-                      "are left out\n", err)
+
+    def test_an_fcs_of_32_bits(self):
+        self.assertEqual([record["error"] for record in self.frames("tap32.pcap")[0]], [None] * 60)
+        broken = bytearray(pcap(283, [tap32(0), tap32(1)]))
+        broken[-1] ^= 1
+        for name, content, faults in (("tap32.pcap", None, 0), ("broken.pcap", broken, 1)):
+            if content:
+                (self.path / name).write_bytes(content)
+            self.assertIn("or their FCS of 32 bits\n", self.converted(name, faults))
+
+    def test_what_the_sniffer_calls_wrong_stays_wrong(self):
+        """Also where the container has no place for the FCS that it had."""
+        broken = bytearray(pcap(1, [ethernet(ipv4(udp(zep(number)))) for number in range(3)]))
+        broken[-1] &= 0x7F
+        (self.path / "broken_zep.pcap").write_bytes(broken)
+        self.converted("broken_zep.pcap", 1)
+
+    def converted(self, name, faults):
+        """Converts a capture, holds how many frames are malformed, and returns what was said."""
+        out = self.path / "converted.pcapng"
+        err = rubric("convert", self.path / name, out)[2]
+        lines = rubric("decode", "--format", "jsonl", out)[1].splitlines()
+        errors = [json.loads(line)["error"] for line in lines]
+        self.assertEqual(sum(error is not None for error in errors), faults, name)
+        return err
 
     def test_link_types_by_option(self):
         user = self.path / "user.pcap"

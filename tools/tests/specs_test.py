@@ -316,15 +316,16 @@ class File(Folder):
         self.assertEqual(line.stdout.split(), ["01", "00", "02"], line.stderr)
 
     def test_parameters_lists_and_other_encodings_are_written_as_they_are_read(self):
-        args = ["--spec", "spec/kaitai_check/lists.ksy"]
-        made = rubric("generate", *args, "--message", "lists", "--count", "60").stdout
-        raw = "".join(json.loads(line)["raw"] + "\n" for line in made.splitlines())
-        read = rubric("decode", *args, "--as", "lists", "--format", "jsonl", stdin=raw).stdout
-        sound = [line for line in read.splitlines() if json.loads(line)["error"] is None]
-        self.assertGreater(len(sound), 20)
-        again = rubric("encode", *args, "--format", "hex", stdin="\n".join(sound))
-        self.assertEqual([line.replace(" ", "").lower() for line in again.stdout.splitlines()],
-                         [json.loads(line)["raw"] for line in sound], again.stderr)
+        for name in ("lists", "computed"):
+            args = ["--spec", f"spec/kaitai_check/{name}.ksy"]
+            made = rubric("generate", *args, "--message", name, "--count", "60").stdout
+            raw = "".join(json.loads(line)["raw"] + "\n" for line in made.splitlines())
+            read = rubric("decode", *args, "--as", name, "--format", "jsonl", stdin=raw).stdout
+            sound = [line for line in read.splitlines() if json.loads(line)["error"] is None]
+            self.assertGreater(len(sound), 20)
+            again = rubric("encode", *args, "--format", "hex", stdin="\n".join(sound))
+            self.assertEqual([line.replace(" ", "").lower() for line in again.stdout.splitlines()],
+                             [json.loads(line)["raw"] for line in sound], again.stderr)
 
     def test_what_a_condition_ends_is_cut_or_written_wrongly(self):
         text = ("meta: {id: ends}\nseq: [{id: list, type: u1, repeat: until, "

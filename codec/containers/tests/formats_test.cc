@@ -304,8 +304,17 @@ const RadioCase kRadioCases[] = {
     {"TapUnpaddedLast", 283, "00 00 09 00  00 00 01 00 01  02 00 01 31 a4", 9, "02 00 01", 0xa431,
      kSound},
     {"TapNoFields", 283, "00 00 04 00  02 00 01", 4, "02 00 01", kAbsent},
-    refused("TapFcs32", 283, "00 00 0c 00  00 00 01 00 02 00 00 00  02", Fault::kUnsupported, 8,
-            "WIRE-RADIO-TAP"_rule),
+    // zlib.crc32(bytes.fromhex("0200010203")), and of 3 bytes without and with the zero behind.
+    {"TapFcs32", 283, "00 00 0c 00  00 00 01 00 02 00 00 00  02 00 01 02 03 72 fd 1f 16", 12,
+     "02 00 01 02 03", kAbsent},
+    {"TapFcs32Short", 283, "00 00 0c 00  00 00 01 00 02 00 00 00  02 00 01 ea 3d c2 8b", 12,
+     "02 00 01", kAbsent},
+    {"TapFcs32Padded", 283, "00 00 0c 00  00 00 01 00 02 00 00 00  02 00 01 d6 26 56 92", 12,
+     "02 00 01", kAbsent},
+    {"TapWrongFcs32", 283, "00 00 0c 00  00 00 01 00 02 00 00 00  02 00 01 ea 3d c2 8a", 12,
+     "02 00 01", kAbsent, kWrongFcs},
+    {"TapNoRoomForFcs32", 283, "00 00 0c 00  00 00 01 00 02 00 00 00  02 00 01", 12, "02 00 01",
+     kAbsent, kWrongFcs},
     refused("TapFcsUnknown", 283, "00 00 0c 00  00 00 01 00 03 00 00 00", Fault::kUnexpected, 8,
             "WIRE-RADIO-TAP"_rule),
     refused("TapFcsWithoutValue", 283, "00 00 08 00  00 00 00 00", Fault::kTruncated, 4,
@@ -326,8 +335,7 @@ TEST(WireRadioFcs, WhatARecordCanBe) {
     const std::string record = from_hex(row.record);
     Packet packet;
     decode_radio_record(view(record), row.link_type, packet);
-    const bool unsupported = row.error.fault == Fault::kUnsupported;
-    EXPECT_EQ(packet.framing, unsupported ? Framing::kBare : Framing::kRadio) << row.name;
+    EXPECT_EQ(packet.framing, Framing::kRadio) << row.name;
     EXPECT_EQ(packet.offset_bytes, row.offset) << row.name;
     EXPECT_EQ(to_hex(packet.bytes), to_hex(view(from_hex(row.bytes)))) << row.name;
     EXPECT_EQ(packet.fcs, row.fcs) << row.name;

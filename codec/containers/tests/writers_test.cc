@@ -152,6 +152,26 @@ TEST(WireRadioTap, AHeaderThatIsWrongIsWrittenAsItIs) {
   EXPECT_EQ(written, record);
 }
 
+TEST(WireRadioTap, AFrameWithoutItsFcsOf32BitsIsAsSoundAsItWas) {
+  const std::string header = from_hex("00 00 0c 00  00 00 01 00 02 00 00 00");
+  const std::string frames[] = {from_hex("02 00 01 02 03 72 fd 1f 16"),
+                                from_hex("02 00 01 02 03 72 fd 1f 17"),
+                                from_hex("02 00 01"),
+                                "\2",
+                                std::string(127, 'x'),
+                                std::string(128, 'x')};
+  for (const std::string& frame : frames) {
+    const std::string record = header + frame;
+    const Packet packet = of_record(record, kLinkRadioTap);
+    EXPECT_TRUE(packet.radio.more);
+    std::string written;
+    append_record(packet, written);
+    const Packet again = of_record(written, link_type_of(packet));
+    EXPECT_EQ(again.error, packet.error) << frame.size();
+    EXPECT_EQ(again.bytes.size(), packet.bytes.size()) << frame.size();
+  }
+}
+
 TEST(WirePcap, TimesBeyondTheFormatAreItsLast) {
   const std::string frame = from_hex("02 00 01 31 a4");
   Packet packet = of_record(frame, kLinkRadioFcs);

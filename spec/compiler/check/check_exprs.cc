@@ -10,8 +10,9 @@
 namespace rubricc {
 namespace {
 
-constexpr int kStackMax = 8;    // kMaxExprDepth of codec/reflect/schema.h.
-constexpr int kStepsMax = 255;  // reflect::Expr::count is a byte.
+constexpr int kStackMax = 8;       // kMaxExprDepth of codec/reflect/schema.h.
+constexpr int kStepsMax = 255;     // reflect::Expr::count is a byte.
+constexpr int kExpandedMax = 100;  // Computed instances of one expression.
 constexpr Interval kConstants{-2147483648LL, 2147483647LL};
 
 ExprShape open() { return {}; }
@@ -55,6 +56,7 @@ class Resolver {
       case ExprOp::kLe:
       case ExprOp::kGt:
       case ExprOp::kGe: return comparison(expr);
+      case ExprOp::kSelect: return choice(expr);
       default: return arithmetic(expr);
     }
   }
@@ -123,12 +125,6 @@ class Resolver {
                    "only instances read peeks");
       return nullptr;
     }
-    const auto& computed = scope_.type.computed;
-    if (std::find(computed.begin(), computed.end(), name) != computed.end()) {
-      check_.error(expr.place, fmt::format("instance {} cannot be read here", quote(name)),
-                   "it is computed, and passed over");
-      return nullptr;
-    }
     const std::span before(fields.data(), scope_.fields_before);
     check_.error(expr.place, fmt::format("unknown field {}", quote(name)),
                  suggestion(name, ids_of(before)));
@@ -174,7 +170,7 @@ class Resolver {
     const std::string what = quote(to_text(expr));
     if (step.repeat != RepeatKind::kOnce) {
       check_.error(expr.place, fmt::format("{} is a list", what), "a single number was expected");
-    } else if (step.condition) {
+    } else if (step.condition && !may_float(expr)) {
       check_.error(expr.place, fmt::format("{} may be absent", what),
                    "a field without 'if' was expected");
     } else if (step.fixed_offset < 0 && !may_float(expr)) {
@@ -204,8 +200,71 @@ class Resolver {
     return std::nullopt;
   }
 
+  /// Returns the computed instance that the path leads to, or null.
+  const Computed* computed_of(const Expr& expr) const {
+    const Type* owner = &scope_.type;
+    std::size_t at = 0;
+    if (scope_.wide) return nullptr;
+    if (scope_.element != nullptr) {
+      if (expr.path[at++] != "_") return nullptr;
+      owner = scope_.element->type;
+    }
+    for (; owner != nullptr && at < expr.path.size(); ++at) {
+      const auto is_it = [&](const auto& one) { return one->id == expr.path[at]; };
+      if (at + 1 == expr.path.size()) {
+        // Names within it are those of its own file.
+        if (owner->spec != scope_.type.spec) return nullptr;
+        for (const Computed& one : owner->computed) {
+          if (one.id == expr.path[at]) return &one;
+        }
+        return nullptr;
+      }
+      const auto found = std::find_if(owner->fields.begin(), owner->fields.end(), is_it);
+      if (found == owner->fields.end()) return nullptr;
+      owner = (*found)->type;
+    }
+    return nullptr;
+  }
+
+  static void put_before(const std::vector<std::string>& path, Expr& expr) {
+    if (expr.op == ExprOp::kField) expr.path.insert(expr.path.begin(), path.begin(), path.end());
+    for (const auto& operand : expr.operands) put_before(path, *operand);
+  }
+
+  /// Puts what a computed instance is computed from in place of it.
+  ExprShape computed(Expr& expr, const Computed& one) {
+    if (one.text.empty()) {
+      check_.error(expr.place, fmt::format("instance {} cannot be read here", quote(one.id)),
+                   "it has no value that is always there");
+      return open();
+    }
+    if (++expanded_ > kExpandedMax) {
+      check_.error(expr.place, fmt::format("instance {} takes too many others", quote(one.id)),
+                   "or is computed from itself");
+      return open();
+    }
+    const ExprPtr tree = parse_expr(one.text, one.place, check_.diagnostics);
+    if (!tree) return open();
+    put_before({expr.path.begin(), expr.path.end() - 1}, *tree);
+    ExprShape shape = resolve(*tree);
+    if (shape.shape == Shape::kOpen) return shape;
+    if (shape.shape == Shape::kInt && !one.enum_name.empty()) {
+      shape = {Shape::kEnum, find_enum(*scope_.type.spec, one.enum_name)};
+      if (shape.enumeration == nullptr) {
+        check_.error(one.place, fmt::format("unknown enum {}", quote(one.enum_name)),
+                     suggestion(one.enum_name, ids_of(scope_.type.spec->enums)));
+        return open();
+      }
+    }
+    if (expr.to_i && shape.shape == Shape::kEnum) shape = {Shape::kInt, nullptr};
+    tree->place = expr.place;
+    expr = std::move(*tree);
+    return shape;
+  }
+
   ExprShape field(Expr& expr) {
     if (const auto found = param(expr)) return *found;
+    if (const Computed* found = computed_of(expr)) return computed(expr, *found);
     const bool of_element = scope_.element != nullptr && expr.path[0] == "_";
     const Field* step = of_element ? scope_.element : head(expr);
     const Type& owner = of_element && step->type != nullptr ? *step->type : scope_.type;
@@ -219,8 +278,11 @@ class Resolver {
       }
       if (check_.is_open(step)) return open();
       if (!is_fixed(expr, *step)) return open();
-      if (step->fixed_offset < 0) expr.from = index_of(*step, owner);
-      offset += std::max<std::int64_t>(step->fixed_offset, 0);
+      if (step->fixed_offset < 0 || step->condition) {
+        expr.from = index_of(*step, owner);
+      } else {
+        offset += step->fixed_offset;
+      }
       expr.steps.push_back(step);
       if (i + 1 == expr.path.size()) break;
       step = inner(expr, *step, expr.path[i + 1]);
@@ -235,6 +297,10 @@ class Resolver {
     expr.field = step;
     expr.offset_bytes = offset;
     expr.range = step->range;
+    if (step->condition) {
+      check_.diagnostics.note(expr.place, quote(to_text(expr)) + " may be absent, and is 0 then");
+      expr.range.min = std::min<std::int64_t>(expr.range.min, 0);
+    }
     if (step->bit_width == 1 && !expr.to_i && step->enumeration == nullptr) {
       return {Shape::kBool, nullptr};
     }
@@ -279,6 +345,24 @@ class Resolver {
     return {Shape::kBool, nullptr};
   }
 
+  ExprShape choice(Expr& expr) {
+    const Expr& condition = *expr.operands[0];
+    const bool told =
+        wants(condition, resolve(*expr.operands[0]), Shape::kBool, "a condition was expected");
+    const ExprShape left = resolve(*expr.operands[1]);
+    const ExprShape right = resolve(*expr.operands[2]);
+    if (!told || left.shape == Shape::kOpen || right.shape == Shape::kOpen) return open();
+    if (left.shape != right.shape || left.enumeration != right.enumeration) {
+      check_.error(expr.place, fmt::format("{} has values of two kinds", quote(to_text(expr))),
+                   "two numbers, or two values of one enum were expected");
+      return open();
+    }
+    const Interval a = expr.operands[1]->range;
+    const Interval b = expr.operands[2]->range;
+    expr.range = {std::min(a.min, b.min), std::max(a.max, b.max)};
+    return left;
+  }
+
   ExprShape arithmetic(Expr& expr) {
     bool ok = true;
     for (const auto& operand : expr.operands) {
@@ -294,6 +378,11 @@ class Resolver {
       return open();
     }
     const auto range = combine(expr.op, a, b);
+    if (!range && expr.op >= ExprOp::kBitAnd) {
+      check_.error(expr.place, fmt::format("{} can be beyond 32 bits", quote(to_text(expr))),
+                   "operators on bits take and make 0 to 4294967295");
+      return open();
+    }
     if (!range) {
       check_.error(expr.place, fmt::format("{} can overflow 64 bits", quote(to_text(expr))),
                    "smaller numbers were expected");
@@ -305,6 +394,7 @@ class Resolver {
 
   Check& check_;
   const Scope& scope_;
+  int expanded_ = 0;
 };
 
 }  // namespace

@@ -67,6 +67,14 @@ void check_extent(Check& check, Field& field) {
 void check_repeat(Check& check, Field& field) {
   if (field.repeat == RepeatKind::kOnce) return;
   const SourcePlace& place = place_of(field.places, "repeat", field.place);
+  const bool is_byte = field.kind == ValueKind::kBytes && !field.text && field.size &&
+                       field.size->op == ExprOp::kInt && field.size->value == 1;
+  if (is_byte && check.at_run_time) {  // Bytes one by one are shown as numbers.
+    field.kind = ValueKind::kUint;
+    field.width_bytes = 1;
+    field.extent = ExtentKind::kOwn;
+    field.size.reset();
+  }
   if (field.kind == ValueKind::kBytes || field.extent != ExtentKind::kOwn) {
     check.error(place, "repeat of bytes",
                 "numbers, masks or structures can repeat: put it into a type of its own");

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <limits>
 
 namespace rubricc {
@@ -39,6 +40,29 @@ Interval remainder(Interval a, Interval b) {
   return {b.min + 1, 0};
 }
 
+constexpr std::int64_t kBitsMost = 0xFFFFFFFF;
+bool has_32_bits(Interval range) { return range.min >= 0 && range.max <= kBitsMost; }
+
+// Operands and results of operators on bits have 32 of them, so that all languages agree.
+std::optional<Interval> on_bits(ExprOp op, Interval a, Interval b) {
+  if (!has_32_bits(a) || !has_32_bits(b)) return std::nullopt;
+  const bool known = a.min == a.max && b.min == b.max;
+  const auto any = static_cast<std::int64_t>(
+      std::bit_ceil(static_cast<std::uint64_t>(std::max(a.max, b.max)) + 1) - 1);
+  switch (op) {
+    case ExprOp::kBitAnd:
+      return known ? Interval{a.min & b.min, a.min & b.min} : Interval{0, std::min(a.max, b.max)};
+    case ExprOp::kBitOr:
+      return known ? Interval{a.min | b.min, a.min | b.min} : Interval{std::max(a.min, b.min), any};
+    case ExprOp::kBitXor: return known ? Interval{a.min ^ b.min, a.min ^ b.min} : Interval{0, any};
+    default: break;
+  }
+  if (b.max > 31) return std::nullopt;
+  if (op == ExprOp::kShiftRight) return Interval{a.min >> b.max, a.max >> b.min};
+  const Interval out{a.min << b.min, a.max << b.max};
+  return has_32_bits(out) ? std::optional(out) : std::nullopt;
+}
+
 }  // namespace
 
 std::optional<Interval> combine(ExprOp op, Interval a, Interval b) {
@@ -48,6 +72,11 @@ std::optional<Interval> combine(ExprOp op, Interval a, Interval b) {
     case ExprOp::kMul: return corners(a, b, [](Wide x, Wide y) { return x * y; });
     case ExprOp::kDiv: return corners(a, b, wide_floor_div);
     case ExprOp::kMod: return remainder(a, b);
+    case ExprOp::kBitAnd:
+    case ExprOp::kBitOr:
+    case ExprOp::kBitXor:
+    case ExprOp::kShiftLeft:
+    case ExprOp::kShiftRight: return on_bits(op, a, b);
     default: return Interval{0, 1};
   }
 }

@@ -24,8 +24,10 @@ GeneratedFiles emit_cpp(const Spec& spec);
 /// for each structure (a view of its bytes and a writer of its values), and one each for masks,
 /// enums, and the list of a spec's messages. They need conformance/adapters/java/wire only.
 GeneratedFiles emit_java(const Spec& spec);
-/// Emits tools/wireshark/generated/rubric.lua: one file for all named specs that have a serial
-/// carrier, and their imports; nothing if there is none. Frames are read by the protocol `usual`
+/// Returns whether frames begin with the type, and hold messages that dissectors show.
+bool leads_to_messages(const Type& type);
+/// Emits tools/wireshark/generated/rubric.lua: one file for all named specs that have such types,
+/// and their imports; nothing if there is none. Frames are read by the protocol `usual`
 /// until the user chooses, else by the one with the most types. For Lua 5.2 and later.
 GeneratedFiles emit_lua(const Model& model, std::string_view usual = {});
 /// Emits codec/generated/<spec>/tables.h: reflection tables, see codec/reflect/schema.h.

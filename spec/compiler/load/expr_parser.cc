@@ -17,7 +17,7 @@ struct Operator {
   ExprOp op;
   int level;  // Binds tighter the higher it is.
 };
-constexpr std::array<Operator, 13> kOperators{{
+constexpr std::array<Operator, 18> kOperators{{
     {"or", ExprOp::kOr, 1},
     {"and", ExprOp::kAnd, 2},
     {"==", ExprOp::kEq, 4},
@@ -26,15 +26,20 @@ constexpr std::array<Operator, 13> kOperators{{
     {">=", ExprOp::kGe, 4},
     {"<", ExprOp::kLt, 4},
     {">", ExprOp::kGt, 4},
-    {"+", ExprOp::kAdd, 5},
-    {"-", ExprOp::kSub, 5},
-    {"*", ExprOp::kMul, 6},
-    {"/", ExprOp::kDiv, 6},
-    {"%", ExprOp::kMod, 6},
+    {"|", ExprOp::kBitOr, 5},
+    {"^", ExprOp::kBitXor, 6},
+    {"&", ExprOp::kBitAnd, 7},
+    {"<<", ExprOp::kShiftLeft, 8},
+    {">>", ExprOp::kShiftRight, 8},
+    {"+", ExprOp::kAdd, 9},
+    {"-", ExprOp::kSub, 9},
+    {"*", ExprOp::kMul, 10},
+    {"/", ExprOp::kDiv, 10},
+    {"%", ExprOp::kMod, 10},
 }};
 constexpr int kNotLevel = 3;
 constexpr int kComparisonLevel = 4;
-constexpr int kTightest = 6;
+constexpr int kTightest = 10;
 
 bool is_word_start(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
@@ -81,7 +86,7 @@ class Parser {
   }
 
   ExprPtr parse() {
-    ExprPtr expr = binary(1, 0);
+    ExprPtr expr = choice(0);
     if (!token_.empty())
       fail(fmt::format("unexpected {}", quote(token_)),
            "an operator or the end of the expression was expected");
@@ -132,6 +137,25 @@ class Parser {
     return out;
   }
 
+  void only_at_run_time(std::string_view what) {
+    diagnostics_.error_in_code(here(), fmt::format("{} is outside the profile", quote(what)),
+                               "+ - * / %, comparisons, and, or, not were expected");
+  }
+
+  ExprPtr choice(int depth) {
+    ExprPtr condition = binary(1, depth);
+    if (token_ != "?") return condition;
+    only_at_run_time("? :");
+    ExprPtr out = node(ExprOp::kSelect, here());
+    next();
+    out->operands.push_back(std::move(condition));
+    out->operands.push_back(choice(depth + 1));
+    if (token_ != ":") fail("a choice without ':'", "a ? b : c was expected");
+    next();
+    out->operands.push_back(choice(depth + 1));
+    return out;
+  }
+
   ExprPtr binary(int level, int depth) {
     if (depth > kDepthMax) fail("the expression nests too deep", "write it simpler");
     if (level == kNotLevel && token_ == "not") {
@@ -142,6 +166,7 @@ class Parser {
     }
     ExprPtr left = level == kTightest + 1 ? unary(depth) : binary(level + 1, depth);
     while (operator_ != nullptr && operator_->level == level) {
+      if (operator_->op >= ExprOp::kBitAnd) only_at_run_time(operator_->text);
       ExprPtr out = node(operator_->op, here());
       next();
       out->operands.push_back(std::move(left));
@@ -155,7 +180,7 @@ class Parser {
   ExprPtr unary(int depth) {
     if (token_ == "(") {
       next();
-      ExprPtr inner = binary(1, depth + 1);
+      ExprPtr inner = choice(depth + 1);
       if (token_ != ")") fail("a bracket is not closed", "')' was expected");
       next();
       return inner;
@@ -185,10 +210,12 @@ class Parser {
 
   ExprPtr number() {
     ExprPtr out = node(ExprOp::kInt, here());
-    const auto value = parse_integer(token_);
+    std::string digits(token_);
+    std::erase(digits, '_');
+    const auto value = parse_integer(digits);
     if (!value)
       fail(fmt::format("{} is not a number", quote(token_)),
-           "decimal or 0x digits of a 64-bit number were expected");
+           "decimal, 0x or 0b digits of a 64-bit number were expected");
     out->value = *value;
     next();
     return out;
@@ -251,6 +278,7 @@ class Parser {
 
 int level_of(ExprOp op) {
   if (op == ExprOp::kNot) return kNotLevel;
+  if (op == ExprOp::kSelect) return 0;
   for (const Operator& candidate : kOperators) {
     if (candidate.op == op) return candidate.level;
   }
@@ -266,6 +294,10 @@ std::string text_at(const Expr& expr, int level) {
     case ExprOp::kField: return fmt::format("{}{}", fmt::join(expr.path, "."), to_i);
     case ExprOp::kEnumValue: return fmt::format("{}{}", fmt::join(expr.path, "::"), to_i);
     case ExprOp::kNot: out = "not " + text_at(*expr.operands[0], own); break;
+    case ExprOp::kSelect:
+      out = fmt::format("{} ? {} : {}", text_at(*expr.operands[0], 1),
+                        text_at(*expr.operands[1], own), text_at(*expr.operands[2], own));
+      break;
     default:
       for (const Operator& candidate : kOperators) {
         if (candidate.op != expr.op) continue;

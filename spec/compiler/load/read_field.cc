@@ -141,6 +141,13 @@ void read_text(const YamlInput& input, const YamlMap& map, const Spec& spec, Fie
   }
 }
 
+/// Returns where the text of a scalar begins.
+SourcePlace place_of_text(const YamlInput& input, const YAML::Node& node) {
+  SourcePlace place = input.place(node);
+  if (node.Tag() == "!") ++place.column;  // After the quote.
+  return place;
+}
+
 /// Reads "part(length, 3)": the name of a type, and what its parameters are.
 std::string read_call(const YamlInput& input, const YAML::Node& node, const std::string& word,
                       std::vector<ExprPtr>& arguments) {
@@ -155,8 +162,7 @@ std::string read_call(const YamlInput& input, const YAML::Node& node, const std:
     const bool ends = depth == 0 && (word[at] == ',' || at + 1 == word.size());
     depth += (word[at] == '(') - (word[at] == ')' && !ends);
     if (!ends) continue;
-    SourcePlace place = input.place(node);
-    if (node.Tag() == "!") ++place.column;  // After the quote.
+    SourcePlace place = place_of_text(input, node);
     while (from < at && word[from] == ' ') ++from;
     place.column += static_cast<int>(from);
     auto expr = parse_expr(word.substr(from, at - from), place, input.diagnostics);
@@ -383,12 +389,22 @@ bool is_computed(const YAML::Node& instance) {
   return false;
 }
 
+Computed read_computed(const YamlInput& input, const YamlEntry& entry) {
+  Computed out{.id = entry.key};
+  if (!entry.value.IsMap() || entry.value["if"]) return out;
+  const YAML::Node value = entry.value["value"];
+  const YAML::Node names = entry.value["enum"];
+  if (value && value.IsScalar()) {
+    out.text = value.Scalar();
+    out.place = place_of_text(input, value);
+  }
+  if (names && names.IsScalar()) out.enum_name = names.Scalar();
+  return out;
+}
+
 ExprPtr read_expr(const YamlInput& input, const YAML::Node& node, std::string_view what) {
   const auto text = yaml_text(input, node, what);
-  if (!text) return nullptr;
-  SourcePlace place = input.place(node);
-  if (node.Tag() == "!") ++place.column;  // After the quote.
-  return parse_expr(*text, place, input.diagnostics);
+  return text ? parse_expr(*text, place_of_text(input, node), input.diagnostics) : nullptr;
 }
 
 KeyPlaces places_of(const YamlInput& input, const YamlMap& map) {

@@ -149,7 +149,7 @@ void read_fields(const YamlInput& input, const YamlMap& map, const Spec& spec, T
         const std::string what = fmt::format("instance {} is computed", quote(entry.key));
         input.diagnostics.error_in_code(place, what, "a number or a type at pos was expected");
         input.diagnostics.note(place, what + "; it is not shown");
-        type.computed.push_back(entry.key);
+        type.computed.push_back(read_computed(input, entry));
         continue;
       }
       if (auto field = read_field(input, entry.value, FieldPlace::kInstance, spec, &entry)) {

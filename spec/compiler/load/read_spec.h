@@ -23,6 +23,7 @@ std::unique_ptr<Field> read_field(const YamlInput& input, const YAML::Node& node
 
 /// Returns whether an instance is more than a number or a type at a constant position.
 bool is_computed(const YAML::Node& instance);
+Computed read_computed(const YamlInput& input, const YamlEntry& entry);
 
 /// Reads `-unnamed` of a mask's bit.
 MaskBit read_mask_bit(const YamlInput& input, const YAML::Node& node);

@@ -201,11 +201,14 @@ std::optional<std::int64_t> parse_integer(std::string_view text) {
   const bool negative = text.starts_with('-');
   if (negative) text.remove_prefix(1);
   const bool hex = text.starts_with("0x") || text.starts_with("0X");
-  if (hex) text.remove_prefix(2);
+  const bool binary = text.starts_with("0b") || text.starts_with("0B");
+  if (hex || binary) text.remove_prefix(2);
   std::int64_t value = 0;
   if (text.empty() || text.front() == '-') return std::nullopt;
-  const auto [end, fault] =
-      std::from_chars(text.data(), text.data() + text.size(), value, hex ? 16 : 10);
+  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value,
+                                            hex      ? 16
+                                            : binary ? 2
+                                                     : 10);
   if (fault != std::errc() || end != text.data() + text.size()) return std::nullopt;
   return negative ? -value : value;
 }

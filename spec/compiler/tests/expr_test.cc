@@ -29,6 +29,14 @@ TEST(Expressions, BindAsInKaitaiStruct) {
             "kind.to_i == tinyos::serial_kind::ack.to_i");
 }
 
+TEST(Expressions, OnBitsBindAsInKaitaiStruct) {
+  EXPECT_EQ(parsed("(a & 0b1111_0000) >> 4"), "(a & 240) >> 4");
+  EXPECT_EQ(parsed("a & 0xf == 1 or b"), "a & 15 == 1 or b");
+  EXPECT_EQ(parsed("a | (b ^ (c & (d << (e + 1))))"), "a | b ^ c & d << e + 1");
+  EXPECT_EQ(parsed("a ? b : c ? d : e"), "a ? b : c ? d : e");
+  EXPECT_EQ(parsed("(a ? b : c) + 1"), "(a ? b : c) + 1");
+}
+
 TEST(Expressions, PlacesCountFromTheStartOfTheText) {
   Diagnostics diagnostics;
   EXPECT_EQ(parse_expr("a + (b * ", {"t", 7, 20}, diagnostics), nullptr);
@@ -61,6 +69,39 @@ TEST(Intervals, HoldEveryResult) {
       }
     }
   }
+}
+
+TEST(Intervals, HoldEveryResultOnBits) {
+  std::mt19937 random(8);
+  std::uniform_int_distribution<std::int64_t> some(0, 70), width(0, 6);
+  const auto value_of = [](ExprOp op, std::int64_t x, std::int64_t y) {
+    switch (op) {
+      case ExprOp::kBitAnd: return x & y;
+      case ExprOp::kBitOr: return x | y;
+      case ExprOp::kBitXor: return x ^ y;
+      case ExprOp::kShiftLeft: return x << y;
+      default: return x >> y;
+    }
+  };
+  for (int i = 0; i < 2000; ++i) {
+    const std::int64_t a0 = some(random), b0 = some(random);
+    const Interval a{a0, a0 + width(random)}, b{b0, b0 + width(random)};
+    for (const ExprOp op : {ExprOp::kBitAnd, ExprOp::kBitOr, ExprOp::kBitXor, ExprOp::kShiftLeft,
+                            ExprOp::kShiftRight}) {
+      const auto range = combine(op, a, b);
+      for (std::int64_t x = a.min; range && x <= a.max; ++x) {
+        for (std::int64_t y = b.min; y <= b.max; ++y) {
+          ASSERT_GE(value_of(op, x, y), range->min) << x << ' ' << y;
+          ASSERT_LE(value_of(op, x, y), range->max) << x << ' ' << y;
+        }
+      }
+      const bool shifts = op == ExprOp::kShiftLeft || op == ExprOp::kShiftRight;
+      ASSERT_EQ(range.has_value(), !shifts || (b.max <= 31 && (op == ExprOp::kShiftRight ||
+                                                               a.max << b.max <= 0xFFFFFFFF)));
+    }
+  }
+  EXPECT_FALSE(combine(ExprOp::kBitAnd, {-1, 1}, {1, 1}));
+  EXPECT_FALSE(combine(ExprOp::kBitOr, {0, 0x100000000}, {1, 1}));
 }
 
 TEST(Intervals, RoundDownLikeKaitaiStruct) {

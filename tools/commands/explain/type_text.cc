@@ -213,12 +213,14 @@ struct Operator {
   int precedence;
 };
 constexpr Operator kOperators[] = {
-    {Op::kMul, "*", 6}, {Op::kDiv, "/", 6}, {Op::kMod, "%", 6}, {Op::kAdd, "+", 5},
-    {Op::kSub, "-", 5}, {Op::kLt, "<", 4},  {Op::kLe, "<=", 4}, {Op::kGt, ">", 4},
-    {Op::kGe, ">=", 4}, {Op::kEq, "==", 3}, {Op::kNe, "!=", 3}, {Op::kAnd, "and", 2},
-    {Op::kOr, "or", 1},
+    {Op::kMul, "*", 10},   {Op::kDiv, "/", 10},        {Op::kMod, "%", 10},
+    {Op::kAdd, "+", 9},    {Op::kSub, "-", 9},         {Op::kShiftLeft, "<<", 8},
+    {Op::kBitAnd, "&", 7}, {Op::kShiftRight, ">>", 8}, {Op::kBitXor, "^", 6},
+    {Op::kBitOr, "|", 5},  {Op::kLt, "<", 4},          {Op::kLe, "<=", 4},
+    {Op::kGt, ">", 4},     {Op::kGe, ">=", 4},         {Op::kEq, "==", 3},
+    {Op::kNe, "!=", 3},    {Op::kAnd, "and", 2},       {Op::kOr, "or", 1},
 };
-constexpr int kAtom = 9;
+constexpr int kAtom = 11;
 
 struct Operand {
   std::string text;
@@ -278,6 +280,12 @@ std::string expr_text(const Expr& expr, const Type& type) {
       stack.push_back({type.params[step.value]});
     } else if (step.op == Op::kNot) {
       stack.back().text = "not (" + stack.back().text + ')';
+    } else if (step.op == Op::kSelect) {
+      const std::size_t at = stack.size() - 3;
+      stack[at] = {.text = fmt::format("{} ? {} : {}", stack[at].text, stack[at + 1].text,
+                                       stack[at + 2].text),
+                   .precedence = 0};
+      stack.resize(at + 1);
     } else {
       const Operand b = std::move(stack.back());
       stack.pop_back();

@@ -499,6 +499,26 @@ end
 function Window:quotient(a, b) return b == 0 and 0 or math.floor(a / b) end
 function Window:remainder(a, b) return b == 0 and 0 or a % b end
 
+-- The bits that are set in so many of both numbers.
+local function joined(a, b, once, twice)
+  local value, place = 0, 1
+  while a > 0 or b > 0 do
+    local set = a % 2 + b % 2
+    if set == 1 and once or set == 2 and twice then value = value + place end
+    a, b, place = math.floor(a / 2), math.floor(b / 2), place * 2
+  end
+  return value
+end
+function Window:bit_and(a, b) return joined(a, b, false, true) end
+function Window:bit_or(a, b) return joined(a, b, true, true) end
+function Window:bit_xor(a, b) return joined(a, b, true, false) end
+function Window:left(a, b) return math.floor(a * 2 ^ b) end
+function Window:right(a, b) return math.floor(a / 2 ^ b) end
+function Window:select(condition, a, b)
+  if condition then return a end
+  return b
+end
+
 function Window:u8(offset)
   local at = self.base + offset
   if at + 1 > self.limit then return 0 end
@@ -1334,7 +1354,16 @@ local function path_text(path)
   return table.concat(names, "/")
 end
 
+local frame_size, frame_kept = Field.new("frame.len"), Field.new("frame.cap_len")
+
 local function show_fault(tree, pinfo, err, range)
+  local size, kept = frame_size().value, frame_kept().value
+  if kept < size then  -- No fault of the sender.
+    local text = string.format("cut by the capture (%d of %d bytes)", kept, size)
+    tree:add_tvb_expert_info(note_expert, range, text)
+    pinfo.cols.info:append(" * " .. text)
+    return
+  end
   local rule = rules[err.rule]
   local text = err.fault .. ": " .. err.text
   if rule then text = text .. " [" .. err.rule .. " " .. rule.level .. ": " .. rule.text .. "]" end
@@ -1399,8 +1428,16 @@ local function show_addresses(pinfo, header)
   end
 end
 
+-- A protocol need not travel everywhere.
+local function is_there(carrier, tree, tvb)
+  if carrier then return true end
+  tree:add_tvb_expert_info(note_expert, tvb(), "not_decoded: the protocol has no such frames")
+  return false
+end
+
 local function dissect_packet(tvb, pinfo, tree, fault)
   local carriers = protocol().carriers
+  if not is_there(carriers.serial, tree, tvb) then return end
   local out = decode(carriers.serial, tvb:raw(), radio_choice(carriers))
   local am_type = tvb:len() >= 8 and tvb(0, 1):uint() == 0 and tvb(7, 1):uint() or nil
   show_addresses(pinfo, out[1][1])
@@ -1466,8 +1503,24 @@ end
 
 local frame_control = Field.new("wpan.fcf")
 local encapsulation = Field.new("frame.encap_type")
+local mac_fields = {{frame_control, 2}, {Field.new("wpan.seq_no"), 1},
+                    {Field.new("wpan.dst_pan"), 2}, {Field.new("wpan.dst16"), 2},
+                    {Field.new("wpan.src16"), 2}}
 
 -- The 802.15.4 dissector has taken the header off; the tables count from its first byte.
+local function mac_header()
+  local bytes = {}
+  for _, one in ipairs(mac_fields) do
+    local found = one[1]()
+    local value = found and found.value or 0
+    for _ = 1, one[2] do
+      bytes[#bytes + 1] = string.char(value % 256)
+      value = math.floor(value / 256)
+    end
+  end
+  return table.concat(bytes)
+end
+
 function from_radio.dissector(tvb, pinfo, root)
   local tree = begin(pinfo, root, tvb)
   local control = frame_control()
@@ -1483,7 +1536,8 @@ function from_radio.dissector(tvb, pinfo, root)
   local bytes = tvb:raw()
   local is_i_frame = #bytes == 0 or bytes:byte(1) == 0x3f
   local name = is_i_frame and carriers.radio_i or carriers.radio_t
-  local out = decode(name, string.rep("\0", MAC_HEADER) .. bytes)
+  if not is_there(name, tree, tvb) then return end
+  local out = decode(name, mac_header() .. bytes)
   local am_type = bytes:byte(is_i_frame and 2 or 1)
   local fault
   if MAC_HEADER + #bytes > RADIO_FRAME_MAX then

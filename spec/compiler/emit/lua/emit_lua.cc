@@ -84,6 +84,14 @@ std::string expr_text(const Expr& expr) {
   const std::string right = expr_text(*expr.operands[1]);
   if (expr.op == ExprOp::kDiv) return fmt::format("d:quotient({}, {})", left, right);
   if (expr.op == ExprOp::kMod) return fmt::format("d:remainder({}, {})", left, right);
+  if (expr.op == ExprOp::kSelect) {
+    return fmt::format("d:select({}, {}, {})", left, right, expr_text(*expr.operands[2]));
+  }
+  if (expr.op >= ExprOp::kBitAnd) {
+    constexpr std::string_view kNames[] = {"bit_and", "bit_or", "bit_xor", "left", "right"};
+    const auto at = static_cast<std::size_t>(expr.op) - static_cast<std::size_t>(ExprOp::kBitAnd);
+    return fmt::format("d:{}({}, {})", kNames[at], left, right);
+  }
   const auto side = [](const Expr& operand, const std::string& text) {
     return operand.operands.empty() ? text : "(" + text + ")";
   };
@@ -274,16 +282,13 @@ std::string rule_tables(const Model& model) {
   return out;
 }
 
-bool has_carrier(const Spec& spec, std::string_view carrier) {
-  return std::any_of(spec.types.begin(), spec.types.end(),
-                     [&](const auto& type) { return type->carrier == carrier; });
-}
-
 /// Returns the richest protocol first: it is the one that a reader most likely has.
 std::vector<const Spec*> protocols_of(const Model& model) {
   std::vector<const Spec*> out;
   for (const auto& spec : model.specs) {
-    if (spec->named && has_carrier(*spec, "serial")) out.push_back(spec.get());
+    const bool leads = std::any_of(spec->types.begin(), spec->types.end(),
+                                   [](const auto& type) { return leads_to_messages(*type); });
+    if (spec->named && leads) out.push_back(spec.get());
   }
   std::stable_sort(out.begin(), out.end(),
                    [](const Spec* a, const Spec* b) { return a->types.size() > b->types.size(); });
@@ -311,6 +316,10 @@ std::string serial_frame_of(const Model& model) {
 }  // namespace rubricc::lua
 
 namespace rubricc {
+
+bool leads_to_messages(const Type& type) {
+  return type.carrier == "serial" || type.carrier == "radio_i" || type.carrier == "radio_t";
+}
 
 GeneratedFiles emit_lua(const Model& model, std::string_view usual) {
   using namespace lua;

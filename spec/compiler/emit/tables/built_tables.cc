@@ -22,11 +22,15 @@ reflect::Op load(const Field& field) {
 /// Returns the step of an operator or a constant; operators have one order in both enums.
 reflect::Op op_of(ExprOp op) {
   if (op < ExprOp::kAdd) return reflect::Op::kConst;
-  return static_cast<reflect::Op>(static_cast<int>(op) - static_cast<int>(ExprOp::kAdd) +
-                                  static_cast<int>(reflect::Op::kAdd));
+  const bool late = op >= ExprOp::kBitAnd;
+  const auto first = static_cast<int>(late ? ExprOp::kBitAnd : ExprOp::kAdd);
+  const auto to = static_cast<int>(late ? reflect::Op::kBitAnd : reflect::Op::kAdd);
+  return static_cast<reflect::Op>(static_cast<int>(op) - first + to);
 }
 static_assert(static_cast<int>(ExprOp::kNot) - static_cast<int>(ExprOp::kAdd) ==
               static_cast<int>(reflect::Op::kNot) - static_cast<int>(reflect::Op::kAdd));
+static_assert(static_cast<int>(ExprOp::kSelect) - static_cast<int>(ExprOp::kBitAnd) ==
+              static_cast<int>(reflect::Op::kSelect) - static_cast<int>(reflect::Op::kBitAnd));
 
 std::uint16_t from_of(const Expr& expr) { return static_cast<std::uint16_t>(expr.from + 1); }
 

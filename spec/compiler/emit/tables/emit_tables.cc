@@ -20,7 +20,7 @@ namespace {
 constexpr std::string_view kOpNames[] = {
     "kConst", "kLoadU8", "kLoadBe16", "kLoadLe16", "kLoadBe32", "kLoadLe32", "kAdd",
     "kSub",   "kMul",    "kDiv",      "kMod",      "kEq",       "kNe",       "kLt",
-    "kLe",    "kGt",     "kGe",       "kAnd",      "kOr",       "kNot",      "kParam"};
+    "kLe",    "kGt",     "kGe",       "kAnd",      "kOr",       "kNot"};
 constexpr std::string_view kKindNames[] = {"kUint", "kSint",  "kFloat", "kBits",
                                            "kMask", "kBytes", "kStruct"};
 constexpr std::string_view kRepeatNames[] = {"kOnce", "kCount", "kToEnd", "kUntil"};

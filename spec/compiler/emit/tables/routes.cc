@@ -180,7 +180,8 @@ std::optional<Numbers> solve(const Expr& expr, std::int64_t value, std::int64_t 
       return solve(*expr.operands[0], floor_div(value, factor.range.min), start);
     }
     case ExprOp::kDiv:
-    case ExprOp::kMod: return std::nullopt;
+    case ExprOp::kMod:
+    case ExprOp::kSelect: return std::nullopt;
     default: return solve_condition(expr, value != 0, start);
   }
 }

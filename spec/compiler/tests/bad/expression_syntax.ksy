@@ -1,7 +1,7 @@
 # expect: 17:18: the expression ends early; a number, a field or an enum::value was expected
 # expect: 19:21: a bracket is not closed; ')' was expected
 # expect: 21:17: unexpected 'n'; an operator or the end of the expression was expected
-# expect: 23:17: unexpected '&'; an operator or the end of the expression was expected
+# expect: 23:17: '&' is outside the profile; + - * / %, comparisons, and, or, not were expected
 # expect: 25:15: '_parent' is outside the profile; fields of the same structure can be read
 # expect: 27:16: the expression ends early; a number, a field or an enum::value was expected
 meta:

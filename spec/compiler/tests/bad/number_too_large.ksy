@@ -1,4 +1,4 @@
-# expect: 14:18: '99999999999999999999' is not a number; decimal or 0x digits of a 64-bit number were
+# expect: 14:18: '99999999999999999999' is not a number; decimal, 0x or 0b digits of a 64-bit number were
 #   expected
 meta:
   id: bad

@@ -25,6 +25,26 @@ end
 function Window:quotient(a, b) return b == 0 and 0 or math.floor(a / b) end
 function Window:remainder(a, b) return b == 0 and 0 or a % b end
 
+-- The bits that are set in so many of both numbers.
+local function joined(a, b, once, twice)
+  local value, place = 0, 1
+  while a > 0 or b > 0 do
+    local set = a % 2 + b % 2
+    if set == 1 and once or set == 2 and twice then value = value + place end
+    a, b, place = math.floor(a / 2), math.floor(b / 2), place * 2
+  end
+  return value
+end
+function Window:bit_and(a, b) return joined(a, b, false, true) end
+function Window:bit_or(a, b) return joined(a, b, true, true) end
+function Window:bit_xor(a, b) return joined(a, b, true, false) end
+function Window:left(a, b) return math.floor(a * 2 ^ b) end
+function Window:right(a, b) return math.floor(a / 2 ^ b) end
+function Window:select(condition, a, b)
+  if condition then return a end
+  return b
+end
+
 function Window:u8(offset)
   local at = self.base + offset
   if at + 1 > self.limit then return 0 end
