@@ -1,4 +1,7 @@
-// The clock of a sink, as its join_replies tell it (decision 119).
+// What shows that a sink began anew: its clock, as its join_replies tell it (decision 119), and the
+// island that it acts for (decision 123).
+#include <algorithm>
+
 #include "conformance/check/judge/sink_join.h"
 
 namespace rubric::check {
@@ -52,6 +55,63 @@ void SinkJoins::judge_clock(SinkWatch& sink, const Observation& seen, const Repl
   sink.has_clock = true;
   sink.clock_ms = reply.time_ms;
   sink.clock_us = now;
+}
+
+bool SinkJoins::keeps_former(SinkWatch& sink, std::uint16_t shown, const Place& at,
+                             std::int64_t cause_us) {
+  if (!may_be_told(sink)) return false;
+  const bool former = shown == sink.former_island;
+  const bool under_way = cause_us >= 0 && cause_us < sink.island_set_us &&
+                         at.time_us <= context_.due_us(sink.device, sink.island_set_us);
+  if (former && under_way) return true;
+  const Device& device = context_.device(sink.device);
+  const bool behind = sink.behind_us > sink.island_set_us;
+  // It took that island, and no frame on the air shows that it has gone on since.
+  const bool unheard =
+      cause_us < 0 && sink.island_shown_us > sink.island_set_us && device.last_us < at.time_us;
+  const bool anew =
+      behind || unheard || context_.may_have_restarted(sink.device, sink.island_set_us, at.time_us);
+  const bool started = sink.start_island == kNoIsland || sink.start_island == shown;
+  const bool rebooted = anew && started && !device.hearing;
+  if (!rebooted && (sink.island_sure || !former)) return false;
+  const std::string why = !rebooted ? "nothing proves that it heard that."
+                          : behind  ? "its clock began anew, so that it may have lost its power."
+                          : unheard ? "it may have lost its power since it was last heard."
+                                    : "its DSNs began anew, so that it may have lost its power.";
+  context_.report("N9-SET"_rule, Severity::kInconclusive, at, sink.device,
+                  {"The sink acts for island " + number(shown) + " after it " +
+                       (sink.island_set ? "was" : "had perhaps been") + " told island " +
+                       number(sink.island) + "; " + why,
+                   "Island " + number(sink.island) + ", if it was told.",
+                   {}});
+  sink.island = shown;
+  sink.former_island = kNoIsland;
+  if (rebooted) sink.start_island = shown;  // It begins each life with one island.
+  sink.island_sure = true;
+  return true;
+}
+
+// Returns whether the sink was told its island, perhaps before the capture.
+bool SinkJoins::may_be_told(const SinkWatch& sink) const {
+  return sink.island_set || !context_.options.start_cold;
+}
+
+bool SinkJoins::is_former(std::uint16_t sink, machine::Address address, const Place& at) {
+  SinkWatch* const watch = find(sink);
+  return watch != nullptr && address.devid == context_.device(sink).am &&
+         address.pid != watch->island && !machine::is_reserved(address.pid) &&
+         keeps_former(*watch, address.pid, at, -1);
+}
+
+void SinkJoins::acts(std::uint16_t sink, std::int64_t now_us) {
+  if (SinkWatch* const watch = find(sink)) watch->island_shown_us = now_us;
+}
+
+bool SinkJoins::may_have_lost_island(std::uint16_t sink, std::int64_t now_us) const {
+  const auto its = std::ranges::find(sinks_, sink, &SinkWatch::device);
+  return its != sinks_.end() && may_be_told(*its) &&
+         context_.may_have_restarted(sink, std::max(its->island_set_us, its->island_shown_us),
+                                     now_us);
 }
 
 }  // namespace rubric::check
