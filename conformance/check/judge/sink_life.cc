@@ -98,9 +98,12 @@ bool SinkJoins::may_be_told(const SinkWatch& sink) const {
 
 bool SinkJoins::is_former(std::uint16_t sink, machine::Address address, const Place& at) {
   SinkWatch* const watch = find(sink);
+  const auto of_another = [&](const SinkWatch& other) {  // What it passes on for that one.
+    return other.device != sink && other.island == address.pid;
+  };
   return watch != nullptr && address.devid == context_.device(sink).am &&
          address.pid != watch->island && !machine::is_reserved(address.pid) &&
-         keeps_former(*watch, address.pid, at, -1);
+         std::ranges::none_of(sinks_, of_another) && keeps_former(*watch, address.pid, at, -1);
 }
 
 void SinkJoins::acts(std::uint16_t sink, std::int64_t now_us) {
