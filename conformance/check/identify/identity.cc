@@ -241,18 +241,20 @@ class Identifier {
         misnamed_.emplace_back(i, *owner);
         continue;
       }
-      const std::uint16_t before = earlier_device(stream);
+      const std::uint16_t moved = device_before_move(stream);
+      const std::uint16_t before = moved != kNobody ? moved : earlier_device(stream);
       // A second mote with the same id, in another island, sends while the first does.
       const bool another = role_of(stream) == Role::kMote && stream.frames >= kResumeFrames;
       const bool named = given_.names(stream.am, stream.plain_island);
-      const bool goes_on = before != kNobody && follows(stream, before);
+      const bool goes_on = moved != kNobody || (before != kNobody && follows(stream, before));
       if (goes_on || (before != kNobody && named && !another)) {
         // Where no frame escapes, only a reboot makes the DSNs begin elsewhere; but the DSNs of one
         // who was silent for long may have gone with the past.
         const bool complete = options_.sniffer_complete && run_.past.until_us < 0;
         const bool anew = stream.joins || stream.sink || complete;
-        starts_life_[i] =
-            goes_on && out_.devices[before].radio && anew && !reboots_.contains(before);
+        starts_life_[i] = goes_on && out_.devices[before].radio && anew &&
+                          !reboots_.contains(before) &&
+                          !(moved != kNobody && counts_on(stream, before));
         take_stream(out_.devices[before], stream);
         device_of_stream_[i] = before;
         continue;
@@ -362,6 +364,35 @@ class Identifier {
       found = static_cast<std::uint16_t>(i);
     }
     return found;
+  }
+
+  // Returns the sink, silent since then, whose own line says that it is of this stream's island: it
+  // has an island that nobody saw before, as after it lost its power.
+  std::uint16_t device_before_move(const Stream& stream) const {
+    for (std::size_t i = 0; i < out_.devices.size() && stream.sink; ++i) {
+      const Device& device = out_.devices[i];
+      if (!device.known || !device.radio || device.am != stream.am || device.role != Role::kSink) {
+        continue;
+      }
+      const bool silent = device.last_us <= stream.first_us;
+      const bool moved =
+          lines_.alone_reports(device.island, stream.first_island, !options_.start_cold);
+      if (silent && moved && device.island != stream.first_island) {
+        return static_cast<std::uint16_t>(i);
+      }
+    }
+    return kNobody;
+  }
+
+  // Returns whether the stream's DSNs follow the device's last one, as if it had not rebooted.
+  bool counts_on(const Stream& stream, std::uint16_t before) const {
+    for (std::size_t i = streams_.all().size(); i-- > 0;) {
+      if (device_of_stream_[i] != before) continue;
+      const std::uint8_t first = run_.seen[stream.first].dsn;
+      const auto ahead = static_cast<std::uint8_t>(first - streams_.all()[i].dsn);
+      return ahead >= 1 && ahead <= kGapMax;
+    }
+    return false;
   }
 
   // Returns the sink's island in its last stream so far; SET_ISLAND_ID may have changed it.

@@ -1,5 +1,7 @@
 #include "conformance/check/identify/serial_lines.h"
 
+#include <algorithm>
+
 #include "conformance/check/message.h"
 
 namespace rubric::check {
@@ -76,20 +78,28 @@ void SerialLines::look(std::uint32_t index) {
     const auto island = static_cast<std::uint16_t>(id);
     // It had its given island before, if it was there before.
     if (line.given && (line.used || streams_.has_sink())) show(line.island);
-    streams_.rename_island(line.island, island);
+    streams_.rename_island(line.back != kNoIsland ? line.back : line.island, island);
+    line.back = kNoIsland;
     if (line.first == kNoIsland) {  // What it was before is not known.
       line.first = island;
       line.set_later = line.used;
       line.set_us = seen.place.time_us;
     }
     line.by_host = false;
+    line.told = true;
     show(island);
     return;
   }
   Net net;
   if (seen.frame.type != am::kNet || !parse_net(seen.frame.payload, net)) return;
+  const std::uint16_t reported = reported_island(seen, net);
+  const bool own = !seen.to_mote && net.src.devid == streams_.sink_am();
+  const std::uint16_t its = own ? net.src.pid : reported;
+  const bool known = std::ranges::find(line.its, its) != line.its.end();
+  if (its != kNoIsland && !known && line.its.size() < kShownMax) line.its.push_back(its);
+  if (line.told && its != kNoIsland) line.back = its != line.island ? its : kNoIsland;
   // A host may write under a name that is not its island's; a sink's own reports outrank it.
-  const bool reports = line.by_host && reported_island(seen, net) != kNoIsland;
+  const bool reports = line.by_host && reported != kNoIsland;
   if (line.island == kNoIsland || line.given || reports) {
     if (const std::uint16_t island = island_of(seen, net, streams_); island != kNoIsland) {
       line.first = island;
@@ -99,6 +109,18 @@ void SerialLines::look(std::uint32_t index) {
   }
   line.used = true;
   if (seen.to_mote) streams_.heard_on_serial(net, line.island);
+}
+
+bool SerialLines::alone_reports(std::uint16_t before, std::uint16_t now, bool told) const {
+  const auto is_of = [&](const SerialLine& line, std::uint16_t island) {
+    return line.island == island || line.first == island;
+  };
+  const auto reports = [&](const SerialLine& line) {
+    return (line.told || told) && is_of(line, before) &&
+           std::ranges::find(line.its, now) != line.its.end();
+  };
+  return std::ranges::any_of(lines_, reports) &&
+         std::ranges::none_of(lines_, [&](const SerialLine& line) { return is_of(line, now); });
 }
 
 bool SerialLines::repeats(std::uint32_t index) {

@@ -32,6 +32,13 @@ bool same_frame(const Observation& a, const Observation& b) {
          a.frame.type == b.frame.type && equal(a.frame.payload, b.frame.payload);
 }
 
+// Two sinks that hear a mote may both hand up what it sends from one island to another.
+bool between_islands(const Observation& seen) {
+  Net net;
+  return seen.frame.type == am::kNet && parse_net(seen.frame.payload, net) &&
+         net.src.pid != net.dest.pid;
+}
+
 // How two sources overlap.
 struct Shared {
   std::size_t of_a = 0;  // Frames of each that could be in the other.
@@ -177,7 +184,7 @@ class Duplicates {
         continue;
       }
       out.matched.push_back(i);
-      out.upward = out.upward || !seen.to_mote;
+      out.upward = out.upward || (!seen.to_mote && !between_islands(seen));
       if (timed) used[k] = true;
       if (!timed) from = k + 1;
     }

@@ -11,15 +11,23 @@
 namespace rubric::check {
 namespace {
 
-constexpr std::size_t kNumbersMin = 48;         // Of a line; a fifth of all frames shows by then.
+constexpr std::size_t kNumbersMin = 48;         // Of a line; a fifth of all frames shows by then,
+constexpr std::size_t kNumbersMissed = 8;       // and less when so many of them must be missing.
 constexpr std::size_t kHoleShare = 50;          // Frames of the air for each hole among them.
 constexpr std::int64_t kHostWaitsUs = 900'000;  // Hosts wait 1 s for a confirmation.
+
+// What a capture misses of the air.
+struct Missed {
+  std::size_t holes = 0;
+  std::size_t frames = 0;
+  bool many = false;
+};
 
 // Returns, by tap, whether frames of a serial line are missing from the capture, or may be. Hosts
 // number their packets, and send the next one when the mote has confirmed the last. A line with few
 // such numbers is no better than the capture of the air, whose frames are all numbered; alone it
 // proves nothing.
-std::vector<bool> find_lossy_taps(const Run& run, bool lossy_air) {
+std::vector<bool> find_lossy_taps(const Run& run, const Missed& air) {
   struct Line {
     const Observation* last = nullptr;
     bool confirmed = false;
@@ -54,9 +62,11 @@ std::vector<bool> find_lossy_taps(const Run& run, bool lossy_air) {
       line = {&seen, false, 0, line.numbers + 1, true};
     }
   }
-  for (std::size_t tap = 0; tap < lines.size() && lossy_air; ++tap) {
+  for (std::size_t tap = 0; tap < lines.size() && air.many; ++tap) {
     const bool serial = run.taps[tap].link == machine::Link::kSerial;
-    if (serial && lines[tap].heard && lines[tap].numbers < kNumbersMin) out[tap] = true;
+    const std::size_t numbers = lines[tap].numbers;
+    const bool few = numbers < kNumbersMin || numbers * air.holes < kNumbersMissed * air.frames;
+    if (serial && lines[tap].heard && few) out[tap] = true;
   }
   for (std::size_t tap = 0; tap < run.past.lossy_taps.size(); ++tap) {
     if (run.past.lossy_taps[tap]) out[tap] = true;
@@ -68,21 +78,21 @@ bool is_of(ReqId requirement, std::string_view group) {
   return std::string_view(reflect::requirement(requirement).id).starts_with(group);
 }
 
-// Returns whether the capture misses many frames of the air.
-bool misses_air(const Identity& who, const Options& options) {
-  std::size_t holes = 0;
-  std::uint64_t frames = 0;
+// Returns what the capture misses of the air.
+Missed missed_air(const Identity& who, const Options& options) {
+  Missed out;
   for (const Device& device : who.devices) {
-    holes += device.holes.size();
-    frames += device.frames;
+    out.holes += device.holes.size();
+    out.frames += device.frames;
   }
-  return !options.sniffer_complete && kHoleShare * holes >= frames;
+  out.many = !options.sniffer_complete && kHoleShare * out.holes >= out.frames;
+  return out;
 }
 
 }  // namespace
 
 std::vector<bool> find_lossy_taps(const Run& run, const Identity& who, const Options& options) {
-  return find_lossy_taps(run, misses_air(who, options));
+  return find_lossy_taps(run, missed_air(who, options));
 }
 
 Context::Context(const Run& r, const Options& o, const Identity& w, Findings& f)
@@ -158,7 +168,7 @@ void Context::look_up() {
   }
   find_restarts();
   lossy_taps = find_lossy_taps(run, who, options);
-  lossy_air = who.hears_radio && misses_air(who, options);
+  lossy_air = who.hears_radio && missed_air(who, options).many;
   untimed_taps = run.unordered_taps;
   untimed_taps.resize(run.taps.size());
   unordered = std::find(untimed_taps.begin(), untimed_taps.end(), true) != untimed_taps.end();
@@ -182,13 +192,14 @@ void Context::find_restarts() {
   for (std::size_t i = run.past.senders.size(); i < run.seen.size(); ++i) {
     const Observation& seen = run.seen[i];
     const std::uint16_t sender = who.marks[i].device;
-    if (seen.kind != Observation::Kind::kRadio || !seen.has_dsn || sender == kNobody) continue;
+    const bool sent = seen.kind == Observation::Kind::kRadio && !who.marks[i].repeat;
+    if (!sent || !seen.has_dsn || sender == kNobody) continue;
     const auto at = heard.find(seen.frame.src);
     if (at == heard.end()) continue;
     Heard& its = at->second;
     // Which of them it is of may be wrong; a DSN that goes on with none has begun anew.
     bool goes_on = false;
-    for (int gap = 0; gap <= kGapMax; ++gap) {
+    for (int gap = 1; gap <= kGapMax; ++gap) {
       goes_on |= its.at_dsn[static_cast<std::uint8_t>(seen.dsn - gap)] > 0;
     }
     const std::int64_t now_us = seen.place.time_us;

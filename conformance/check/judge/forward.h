@@ -82,8 +82,10 @@ class Forwarding {
   bool alters_up(std::uint16_t sink, const Net& net);
   /// Notes that another message left on the sink's serial line.
   void went_up(std::uint16_t sink, std::int64_t now_us);
-  /// Sets the sink's island from now on.
+  /// Sets the island that the sink is told.
   void set_island(std::uint16_t sink, std::uint16_t island, std::int64_t now_us, bool sure);
+  /// Notes that the sink acts for that island.
+  void acts(std::uint16_t sink, std::uint16_t island, std::int64_t now_us);
   void begin_life(std::uint16_t sink, std::int64_t since_us);
   /// Judges what the sink owes, by a log that has all that it does until then.
   void overdue(std::uint16_t sink, std::int64_t now_us);
@@ -106,8 +108,10 @@ class Forwarding {
     std::uint16_t island = kNoIsland;
     std::uint16_t last_island = kNoIsland;  ///< Before SET_ISLAND_ID.
     std::int64_t island_changed_us = -1'000'000'000;
-    std::int64_t slack_us = 0;  ///< For so long it may act for either island.
-    bool island_sure = true;    ///< That change surely arrived.
+    std::int64_t island_shown_us = -1'000'000'000;  ///< When it last acted for its island.
+    std::int64_t slack_us = 0;                      ///< For so long it may act for either island.
+    bool island_sure = true;                        ///< That change surely arrived.
+    bool told = false;  ///< It was told an island, perhaps before the capture.
     /// Returns whether its island changed about then.
     bool changing(std::int64_t time_us) const;
     bool off = false;                 // Its serial line, by its application.
@@ -132,6 +136,7 @@ class Forwarding {
     Stale stale;                  ///< On its serial line.
   };
 
+  static void change_island(Line& line, std::uint16_t island, std::int64_t now_us, bool sure);
   void forwards_nothing(const Line& line);
   Line* find(std::uint16_t sink);
   static void store(Way& way, const Passing& passing);

@@ -22,6 +22,7 @@ Forwarding::Forwarding(Context& context) : context_(context) {
     line.am = device.am;
     line.island = device.set_later ? kNoIsland : device.island;
     line.serial = device.shows_line();
+    line.told = !context.options.start_cold;
     line.slack_us = device.whole ? context.response_us(line.sink) : kIslandSlackUs;
   }
 }
@@ -47,14 +48,27 @@ Forwarding::Line* Forwarding::find(std::uint16_t sink) {
 void Forwarding::set_island(std::uint16_t sink, std::uint16_t island, std::int64_t now_us,
                             bool sure) {
   Line* const line = find(sink);
-  if (line == nullptr || line->island == island) return;
+  if (line == nullptr) return;
+  line->told = true;
+  change_island(*line, island, now_us, sure);
+}
+
+void Forwarding::acts(std::uint16_t sink, std::uint16_t island, std::int64_t now_us) {
+  Line* const line = find(sink);
+  if (line == nullptr) return;
+  change_island(*line, island, now_us, true);
+  line->island_shown_us = now_us;
+}
+
+void Forwarding::change_island(Line& line, std::uint16_t island, std::int64_t now_us, bool sure) {
+  if (line.island == island) return;
   // It may pass on as the sink of either island what still waits.
-  forget_owed(line->up);
-  forget_owed(line->down);
-  line->island_changed_us = now_us;
-  line->island_sure = sure;
-  line->last_island = line->island;
-  line->island = island;
+  forget_owed(line.up);
+  forget_owed(line.down);
+  line.island_changed_us = now_us;
+  line.island_sure = sure;
+  line.last_island = line.island;
+  line.island = island;
 }
 
 void Forwarding::begin_life(std::uint16_t sink, std::int64_t since_us) {

@@ -102,9 +102,10 @@ void Forwarding::pass_up(Line& line, Passing& passing, const Observation& seen) 
     if (of_island && context_.half_heard(line.sink)) {
       return context_.needs_host(line.sink, seen.place);
     }
-    const bool lost =
-        passing.forbidden == "N9-SET"_rule &&  // Perhaps its power, and that island.
-        context_.may_have_restarted(line.sink, line.island_changed_us, seen.place.time_us);
+    const std::int64_t known_us = std::max(line.island_changed_us, line.island_shown_us);
+    const bool lost =  // Perhaps its power, and that island.
+        of_island && line.told &&
+        context_.may_have_restarted(line.sink, known_us, seen.place.time_us);
     if (!format && (!line.island_sure || lost)) {
       severity = std::min(severity, Severity::kInconclusive);
     }
@@ -248,10 +249,16 @@ void Forwarding::unheard(Line& line, const Passing& early) {
                      {}});
     return;
   }
+  const bool another = std::ranges::any_of(
+      lines_, [&](const Line& other) { return other.island == early.net.src.pid; });
+  const bool own = early.net.src.devid == line.am && !another;
+  const bool told =
+      own && line.told && context_.options.start_cold;  // And acts for its former one.
   context_.report(
-      "N6-ONCE"_rule, severity, early.place, line.sink,
+      told ? "N9-SET"_rule : "N6-ONCE"_rule, severity, early.place, line.sink,
       {"The sink puts " + name_of(early.net) + " on its serial line; nobody was heard sending it.",
-       "A message that a mote sent.",
+       told ? "Messages of its own from island " + number(line.island) + ", which it was told."
+            : "A message that a mote sent.",
        {}});
 }
 

@@ -151,7 +151,9 @@ std::uint16_t Judge::sure_sink(std::uint32_t index) const {
   const std::uint16_t given = who_.marks[index].receiver;
   if (interfaces_.switched_off(given, machine::Link::kRadio)) return kNobody;
   if (given != kNobody) return given;
-  return context_.only_sink != kNobody && link_acked(run_, index) ? context_.only_sink : kNobody;
+  const std::uint16_t only = context_.only_sink;
+  if (only == kNobody || !link_acked(run_, index)) return kNobody;
+  return sinks_.may_have_lost_island(only, run_.seen[index].place.time_us) ? kNobody : only;
 }
 
 void Judge::radio(std::uint32_t index, const Observation& seen, const Mark& mark) {
@@ -178,8 +180,9 @@ void Judge::radio(std::uint32_t index, const Observation& seen, const Mark& mark
       Reply reply;
       if (!parse_reply(seen.frame.payload, reply)) return cut_off(seen, mark.device);
       if (is(mark.device, Role::kSink)) {
+        const std::uint16_t before = sinks_.island(mark.device);
         const std::uint16_t answered = sinks_.reply(mark.device, seen, reply);
-        island_shown(mark.device, seen.place.time_us);
+        island_shown(mark.device, before, seen.place.time_us);
         joins_.answered(mark.device, answered, seen.place);
       }
       if (is(mark.device, Role::kMote)) {
@@ -411,11 +414,10 @@ void Judge::radio_net(std::uint32_t index, const Observation& seen, const Mark& 
     own_message(sender, seen, net, machine::Link::kRadio, motes_.address(sender).value_or(net.src));
   } else if (is(sender, Role::kSink)) {
     // A base station may hand its sink even the sink's own message (decision 126).
-    const bool own = sinks_.is_own(sender, net.src, seen.place.time_us);
     const bool passes = forwarding_.came_down(sender, net) ||
                         (forwarding_.alters(sender, net) && !originals_.asked(sender, net));
     if (!passes) originals_.used(sender, net.seq_num);
-    if (own && !passes) {
+    if (!passes && is_sinks_own(sender, seen, net)) {
       own_message(sender, seen, net, machine::Link::kRadio, net.src);
     } else if (passes || !forged(sender, seen, net, machine::Link::kRadio, address_of(sender))) {
       acks_.showed_life(sender, seen.place.time_us);
@@ -530,10 +532,10 @@ void Judge::up_serial(const Observation& seen, const Mark& mark, std::uint16_t s
   SerialJoined joined;
   // What an application sends may look like one.
   if (!passes && !originals_.asked(sink, net) && parse_serial_joined(net, joined)) {
+    const std::uint16_t before = sinks_.island(sink);
     announcements_.report(sink, seen, net, joined);
-    island_shown(sink, seen.place.time_us);
-  } else if (sinks_.is_own(sink, net.src, seen.place.time_us) &&
-             !forwarding_.alters_up(sink, net)) {
+    island_shown(sink, before, seen.place.time_us);
+  } else if (!forwarding_.alters_up(sink, net) && is_sinks_own(sink, seen, net)) {
     own_message(sink, seen, net, machine::Link::kSerial, net.src);
     forwarding_.went_up(sink, seen.place.time_us);
   } else if (passes || !forged(sink, seen, net, machine::Link::kSerial, address_of(sink))) {
@@ -556,7 +558,8 @@ void Judge::down_serial(std::uint32_t index, const Observation& seen, const Mark
   const machine::Address base = address_of(mark.device);
   if (net.src == base) own_message(mark.device, seen, net, machine::Link::kSerial, base);
   if (net.src != base && !seen.received) handed_down(mark.device, seen, net, base);
-  const bool sure = serial_acked(run_, index) || mark.receiver == sink;
+  const bool sure = (serial_acked(run_, index) || mark.receiver == sink) &&
+                    !sinks_.may_have_lost_island(sink, seen.place.time_us);
   const bool off = interfaces_.off(sink, machine::Link::kSerial, seen.place.time_us);
   const bool able = !interfaces_.switched_off(sink, machine::Link::kSerial) &&
                     !interfaces_.switched_off(sink, machine::Link::kRadio);

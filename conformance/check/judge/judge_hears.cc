@@ -53,9 +53,27 @@ void Judge::island_told(std::uint16_t sink, const Place& at, std::uint16_t islan
   forwarding_.set_island(sink, island, at.time_us, sure);
 }
 
-// Takes the island that a sink shows: it may not have taken the one that it was told.
-void Judge::island_shown(std::uint16_t sink, std::int64_t now_us) {
-  forwarding_.set_island(sink, sinks_.island(sink), now_us, true);
+// Returns whether it is a sink's message of its own, by its source. Where that is of an island that
+// the sink may have again, it is the sink's from now on.
+bool Judge::is_sinks_own(std::uint16_t sink, const Observation& seen, const Net& net) {
+  const std::uint16_t before = sinks_.island(sink);
+  const bool own = sinks_.is_own(sink, net.src, seen.place.time_us);
+  const bool former = !own && sinks_.is_former(sink, net.src, seen.place);
+  if (former || (own && net.src.pid == sinks_.island(sink))) {
+    island_shown(sink, before, seen.place.time_us);
+  }
+  return own || former;
+}
+
+// Takes the island that a sink shows, of island `before` until then: it may not have taken the one
+// that it was told, or have lost it.
+void Judge::island_shown(std::uint16_t sink, std::uint16_t before, std::int64_t now_us) {
+  // Its base station goes on with the island that it told the sink.
+  const std::uint16_t base = who_.devices[sink].partner;
+  const bool moved = before != kNoIsland && before != sinks_.island(sink);
+  if (moved && base != kNobody) own_island_.try_emplace(base, before);
+  sinks_.acts(sink, now_us);
+  forwarding_.acts(sink, sinks_.island(sink), now_us);
 }
 
 // Returns what a mote by its own log is to the messages that it hears.
@@ -92,8 +110,10 @@ void Judge::hears(std::uint16_t node, const machine::Router& router, machine::Li
                   const Observation& seen, std::uint16_t sender, const Net& net, bool sure) {
   if (router.own.pid == kNoIsland) return;  // A sink of which no island is known.
   const machine::Route route = machine::route_received(router, from, net.dest, net.src);
-  // A message to every island may be taken or ignored (decision 114).
-  const bool free = route.deliver || net.dest.pid == machine::kBroadcastPid;
+  // A message to every island may be taken or ignored (decision 114); so may any by a sink of which
+  // nobody knows the island any more.
+  const bool lost = is(node, Role::kSink) && sinks_.may_have_lost_island(node, seen.place.time_us);
+  const bool free = route.deliver || net.dest.pid == machine::kBroadcastPid || lost;
   const bool off = interfaces_.off(node, from, seen.place.time_us);
   const Standing standing = this->standing(node);
   ReqId forbidden = free ? ReqId::kNone : route.requirement;

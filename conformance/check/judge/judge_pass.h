@@ -51,7 +51,8 @@ class Judge {
   void replied(std::uint32_t index, const Observation& seen, const Mark& mark, const Reply& reply);
   void cut_off(const Observation& seen, std::uint16_t sender);
   void island_told(std::uint16_t sink, const Place& at, std::uint16_t island, bool sure);
-  void island_shown(std::uint16_t sink, std::int64_t now_us);
+  void island_shown(std::uint16_t sink, std::uint16_t before, std::int64_t now_us);
+  bool is_sinks_own(std::uint16_t sink, const Observation& seen, const Net& net);
   void role_broken(ReqId rule, const char* what, const Observation& seen, std::uint16_t device);
   void radio_net(std::uint32_t index, const Observation& seen, const Mark& mark, const Net& net);
   // Takes a message of the node's own.

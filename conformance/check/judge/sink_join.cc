@@ -48,9 +48,10 @@ bool SinkJoins::is_own(std::uint16_t sink, machine::Address address, std::int64_
   if (address.devid != context_.device(sink).am) return false;
   const auto its = [&](const SinkWatch& watch) {
     // If the first island seen of a sink is one that it is told, nobody knows which it had before.
-    const bool may = watch.former_island == kNoIsland || address.pid == watch.former_island;
-    const bool former =
-        watch.island_set && may && now_us <= context_.due_us(sink, watch.island_set_us);
+    const bool unknown =
+        watch.first_set_us >= 0 && now_us <= context_.due_us(sink, watch.first_set_us);
+    const bool former = unknown || (watch.island_set && address.pid == watch.former_island &&
+                                    now_us <= context_.due_us(sink, watch.island_set_us));
     return watch.device == sink && (address.pid == watch.island || former);
   };
   return std::ranges::any_of(sinks_, its);
@@ -82,7 +83,7 @@ void SinkJoins::begin_life(std::uint16_t sink, std::int64_t since_us) {
   const Device& device = context_.device(sink);
   if (!device.hearing) return;  // A capture does not show with which island it begins.
   watch->island = device.island;
-  watch->former_island = kNoIsland;
+  watch->former_island = watch->start_island = kNoIsland;
   watch->ignored = watch->unheard = -1;
   watch->island_set = false;
 }
@@ -90,6 +91,9 @@ void SinkJoins::begin_life(std::uint16_t sink, std::int64_t since_us) {
 void SinkJoins::set_island(std::uint16_t sink, std::uint16_t island, const Place& at, bool sure) {
   SinkWatch* const watch = find(sink);
   if (watch == nullptr) return;
+  const bool seen =
+      watch->island_shown_us >= 0 || (watch->island != island && watch->island != kNoIsland);
+  if (!watch->island_set && !seen) watch->first_set_us = at.time_us;
   if (watch->island == island) {  // It may forget its members, or keep them (decision 123).
     for (auto& [am, pair] : watch->motes) {
       SinkHypothesis forgotten;
@@ -100,6 +104,7 @@ void SinkJoins::set_island(std::uint16_t sink, std::uint16_t island, const Place
     watch->island_sure = watch->island_sure || sure;
     return;
   }
+  if (!watch->island_set) watch->start_island = watch->island;
   watch->island_set = true;
   watch->island_sure = sure;
   watch->former_island = watch->island;
@@ -135,31 +140,6 @@ void SinkJoins::may_forget(SinkWatch& sink, PairWatch& pair, const Place& at) {
     next_.push_back(SinkHypothesis{});
   }
   keep(sink, pair, next_, at);
-}
-
-bool SinkJoins::keeps_former(SinkWatch& sink, std::uint16_t shown, const Place& at,
-                             std::int64_t cause_us) {
-  if (sink.former_island == kNoIsland || shown != sink.former_island) return false;
-  if (cause_us >= 0 && cause_us < sink.island_set_us &&
-      at.time_us <= context_.due_us(sink.device, sink.island_set_us)) {
-    return true;
-  }
-  const bool behind = sink.behind_us > sink.island_set_us;
-  const bool rebooted =
-      !context_.device(sink.device).hearing &&
-      (behind || context_.may_have_restarted(sink.device, sink.island_set_us, at.time_us));
-  if (sink.island_sure && !rebooted) return false;
-  context_.report("N9-SET"_rule, Severity::kInconclusive, at, sink.device,
-                  {"The sink acts for island " + number(shown) + " after it was told island " +
-                       number(sink.island) +
-                       (rebooted ? std::string("; its ") + (behind ? "clock" : "DSNs") +
-                                       " began anew, so that it may have lost its power."
-                                 : "; nothing proves that it heard that."),
-                   "Island " + number(sink.island) + ", if it was told.",
-                   {}});
-  sink.island = std::exchange(sink.former_island, kNoIsland);
-  sink.island_sure = true;
-  return true;
 }
 
 void SinkJoins::missed_island(std::uint16_t sink, std::uint16_t island) {

@@ -115,9 +115,12 @@ struct SinkWatch {
   bool island_set = false;  ///< SET_ISLAND_ID was seen.
   bool island_sure = true;  ///< It surely arrived, if so.
   std::uint16_t former_island = kNoIsland;
+  std::uint16_t start_island = kNoIsland;  ///< With which a life begins, if that was seen.
   std::int32_t ignored = -1;  ///< The value of the last config message that changes nothing.
   std::int32_t unheard = -1;  ///< The last island that it was set to while its line was off.
   std::int64_t island_set_us = 0;
+  std::int64_t first_set_us = -1;     ///< When it was told that, if nobody saw the one before.
+  std::int64_t island_shown_us = -1;  ///< When it last acted for its island.
   std::unordered_map<std::uint16_t, PairWatch> motes;  ///< By AM address.
   bool has_clock = false;                              ///< From the last reply:
   std::uint32_t clock_ms = 0;
@@ -169,10 +172,19 @@ class SinkJoins {
   /// Takes a reply of an unknown sender: it may be the sink's, in a life of few frames.
   void may_have_replied(const Observation& seen, const Reply& reply);
 
-  /// Returns whether a sink that was told another island may show its former one: what made it do
-  /// so came before, or it was never told, or has lost its memory since. In these cases the former
-  /// one is its island again, which is reported as inconclusive.
+  /// Returns whether a sink that was told another island may show this one: its former one, if what
+  /// made it do so came before or it was never told, or, if it may have lost its power, the one
+  /// with which it begins, or any where that was not seen. In the last cases it is the sink's
+  /// island from now on, which is reported as inconclusive. `cause_us`: -1 if there is no cause.
   bool keeps_former(SinkWatch& sink, std::uint16_t shown, const Place& at, std::int64_t cause_us);
+
+  /// Returns whether an address that is not the sink's is its own again, as keeps_former() has it.
+  bool is_former(std::uint16_t sink, machine::Address address, const Place& at);
+  /// Notes that the sink acts for its island.
+  void acts(std::uint16_t sink, std::int64_t now_us);
+  /// Returns whether the sink has perhaps lost its power, and with it the island that it was told,
+  /// since it last acted for that.
+  bool may_have_lost_island(std::uint16_t sink, std::int64_t now_us) const;
 
   /// Returns the sink's island now; kNoIsland if unknown.
   std::uint16_t island(std::uint16_t sink) const;
@@ -195,6 +207,7 @@ class SinkJoins {
   /// Adds that the sink may have forgotten the mote, if so much silence was possible.
   void doubt(std::uint16_t sink, PairWatch& watch, const Place& now) const;
   void may_forget(SinkWatch& sink, PairWatch& pair, const Place& at);
+  bool may_be_told(const SinkWatch& sink) const;
   static std::size_t others(const SinkWatch& sink, const PairWatch& pair);
   static bool owes(SinkWatch& sink, std::uint16_t mote_am, std::uint16_t seq_num);
   void judge_clock(SinkWatch& sink, const Observation& seen, const Reply& reply);

@@ -68,6 +68,26 @@ TEST(Captures, ASinkThatLostItsPowerHasItsFirstIsland) {
   EXPECT_EQ(found_in(moved(1500, true, 11, 5)), "I:J3-DRIFT I:N9-SET");
 }
 
+// The capture begins when the sink is told its island; its clock and the island of its second life
+// are given, and that of a reply to a third mote.
+TEST(Captures, ASinkThatLostItsPowerHasAnIslandThatNobodySaw) {
+  const auto found = [](std::uint32_t clock_ms, std::uint16_t then, std::uint16_t last) {
+    Script script;
+    set_island(script, 100, 13);
+    script.request(1500, 2, 100).reply(1510, 13, 2, 100, 1510);
+    script.dsn[then * 65536U + 1] = script.dsn[13 * 65536U + 1];
+    script.request(3000, 4, 200).reply(3010, then, 4, 200, clock_ms);
+    script.ack_join(3020, then, 4, 200).link_ack().joined(3040, then, 4);
+    script.dsn[last * 65536U + 1] = script.dsn[then * 65536U + 1];
+    script.request(4000, 5, 300).reply(4010, last, 5, 300, clock_ms + 1000);
+    script.ack_join(4020, last, 5, 300).link_ack().joined(4040, last, 5);
+    return found_in(script);
+  };
+  EXPECT_EQ(found(5, 11, 11), "I:J3-DRIFT I:N9-SET");
+  EXPECT_EQ(found(5, 11, 12).substr(0, 28), "I:J3-DRIFT I:N9-SET F:N9-SET") << "It has one island.";
+  EXPECT_EQ(found(3010, 11, 11).substr(0, 8), "F:N9-SET") << "Its clock went on.";
+}
+
 TEST(Captures, ASinkThatLostItsPowerForwardsForItsFirstIsland) {
   const auto found = [](std::uint8_t dsn, int frames) {
     Script script;

@@ -9,6 +9,7 @@
 #include "conformance/check/input/read.h"
 #include "conformance/check/observation.h"
 #include "conformance/check/tests/must_read.h"
+#include "conformance/check/tests/testing.h"
 
 namespace rubric::check {
 namespace {
@@ -114,6 +115,23 @@ TEST(Duplicates, LinesOfTwoSinksAreTwoLines) {
   const std::size_t size = run.seen.size();
   EXPECT_EQ(error_of(run), "");
   EXPECT_EQ(run.seen.size(), size);
+}
+
+TEST(Duplicates, WhatTwoSinksHandUpAlikeMakesTheirLinesNotOne) {
+  const auto error = [](std::uint16_t to) {
+    Script script;
+    const NetFields both = message({11, 2}, {to, machine::kNullDevid}, 7);
+    for (const std::uint32_t tap : {1U, 2U}) {
+      script.up(20 + tap, both, tap);
+      script.up(40, message({std::uint16_t(10 + tap), 1}, {to, machine::kNullDevid}, 8), tap);
+    }
+    for (Observation& seen : script.run.seen) seen.place.file = seen.tap - 1;
+    script.run.files = {"a", "b"};
+    merge(script.run);
+    return error_of(script.run);
+  };
+  EXPECT_EQ(error(12), "");
+  EXPECT_NE(error(11).find("which is of the same serial line"), std::string::npos) << error(11);
 }
 
 TEST(Duplicates, ANodeHasOneLogAndTheFramesOfACaptureBesideIt) {

@@ -309,6 +309,83 @@ TEST(Passive, AHostThatNobodyHearsMaySetTheIsland) {
   EXPECT_NE(found_in(script).find("F:"), std::string::npos) << found_in(script);
 }
 
+void tell(Script& script, double ms, std::uint8_t island) {
+  script.serial(ms, true, am::kConfig, {10, 0, island}).confirm();
+}
+
+// A sink that was told island 12, and took it, says later that it is of island 8, which nobody saw.
+TEST(Passive, ASinkThatIsNotHeardAgainMayHaveLostItsPower) {
+  const auto says = [](bool heard) {
+    Script script;
+    tell(script, 100, 12);
+    script.join(500, 12, 2, 100);
+    script.up(5000, message({8, 1}, {12, kNullDevid}, 6).forwarded());
+    if (heard) {
+      script.net(6000, 1, machine::kAmBroadcast,
+                 message({12, 1}, {12, machine::kBroadcastDevid}, 7), 12);
+    }
+    NetFields down = message({12, kNullDevid}, {12, 1}, 9);
+    down.size = 114;
+    script.down(7000, down).confirm();
+    return found_in(script);
+  };
+  EXPECT_EQ(says(false), "I:N9-SET") << "Its base station goes on with island 12.";
+  EXPECT_EQ(says(true), "F:N9-SET");
+}
+
+TEST(Passive, ASinkThatIsToldItsIslandAgainHasNoOther) {
+  Script script;  // An ack from another island, whose way down the line is not captured.
+  script.join(0, 11, 2, 100);
+  tell(script, 1000, 11);
+  const NetFields asked = message({11, 2}, {12, 1}, 7, 1);
+  script.net(1100, 2, 1, asked).up(1112, asked.forwarded());
+  script.net(1200, 1, 2, asked.ack(40), 11);
+  EXPECT_EQ(found_in(script, false).find("F:"), std::string::npos) << found_in(script, false);
+}
+
+TEST(Passive, ASinkThatBeginsAnewActsForItsFirstIsland) {
+  const auto acts = [](bool anew) {
+    Script script;
+    script.join(0, 7, 2, 100);
+    tell(script, 500, 11);
+    script.dsn[11 * 65536U + 1] = script.dsn[7 * 65536U + 1];
+    script.join(1000, 11, 3, 200);
+    script.dsn[7 * 65536U + 1] = static_cast<std::uint8_t>(script.dsn[11 * 65536U + 1] + 99 * anew);
+    const NetFields passed = message({7, 2}, {7, kNullDevid}, 8);
+    script.net(5000, 2, 1, passed).up(5012, passed.forwarded());
+    const NetFields asked = message({7, 2}, {7, 1}, 9, 1);
+    script.net(6000, 2, 1, asked).net(6040, 1, 2, asked.ack(50), 7);
+    return found_in(script);
+  };
+  EXPECT_EQ(acts(true).find("F:"), std::string::npos) << acts(true);
+  EXPECT_NE(acts(true).find("I:N9-SET"), std::string::npos) << acts(true);
+  EXPECT_EQ(acts(false).substr(0, 8), "F:N9-SET") << acts(false);
+}
+
+// A report is missing beside a line with so many packets of its host, none of which is missing, and
+// one frame in `each` of the air is.
+TEST(Passive, ALineMayMissAsMuchAsTheAir) {
+  const auto fails = [](int packets, int each) {
+    Script script;
+    script.request(0, 2, 100).reply(10, 11, 2, 100, 10).ack_join(20, 11, 2, 100).link_ack();
+    for (int i = 0; i < packets; ++i) {
+      script.serial(1000 + 100.0 * i, true, am::kConfig, {1, 0, 0}).confirm();
+    }
+    for (std::uint16_t i = 0; i < 200; ++i) {
+      if (i % each == 0) ++script.dsn[2];
+      const NetFields sent = update(2, static_cast<std::uint16_t>(300 + i));
+      script.net(20'000 + 100.0 * i, 2, 1, sent).up(20'012 + 100.0 * i, sent.forwarded());
+    }
+    for (const Finding& finding : judge(script.run, {.start_cold = true}).findings) {
+      if (finding.requirement == "J6-REPORT"_rule) return finding.severity == Severity::kFail;
+    }
+    return false;
+  };
+  EXPECT_TRUE(fails(60, 4));
+  EXPECT_FALSE(fails(60, 25)) << "So few packets would not show it.";
+  EXPECT_TRUE(fails(180, 25));
+}
+
 TEST(Passive, AfterWrongSourcesTheRightOneIsRight) {
   Script script;
   script.join(0, 11, 2, 100);

@@ -46,6 +46,19 @@ TEST(Blame, WhatIsMissingHasNoContent) {
   EXPECT_EQ(blamed(reply, {"missing"}), "J3-REPLY");
 }
 
+TEST(Blame, WhatIsLeftForTheLocalIslandGoesToItsWrongAddressToo) {
+  const Rules rules = {"N3-LOCAL", "N4-MOTE"};
+  EXPECT_EQ(blamed(rules, {"differs", "dest", "am"}), "N3-LOCAL");
+  EXPECT_EQ(blamed(rules, {"differs", "am"}), "N4-MOTE");
+}
+
+TEST(Blame, AReportIsANetMsgOnItsLine) {
+  const Rules rules = {"N6-ONCE", "J6-REPEAT"};
+  EXPECT_EQ(blamed(rules, {"serial", "net_msg", "new"}), "J6-REPEAT");
+  EXPECT_EQ(blamed(rules, {"app", "mote_joined", "new"}), "J6-REPEAT");
+  EXPECT_EQ(blamed(rules, {"serial", "net_msg", "again"}), "N6-ONCE");
+}
+
 TEST(Blame, AnAckOfAnotherNumberAndWhatIsMissingOnItsOwn) {
   EXPECT_EQ(blamed({"N3-LOCAL", "T3-SUCCESS"}, {"differs", "seq_num"}), "T3-SUCCESS");
   EXPECT_EQ(blamed({"T4-SEVERAL", "T3-SUCCESS"}, {"missing"}), "T4-SEVERAL");
