@@ -33,7 +33,7 @@ SESSIONS = (
     ("convert", CAPTURE, "-o", "@", "--format", "pcapng"),
     ("decode", CAPTURE, "--write", "@"),
     ("check", CAPTURE, "--format", "json", "--out", "@"),
-    ("check", "--each", FIRMWARE, "--shard", "1/4", "--jobs", "1", "--out", "@"),
+    ("check", "--each", FIRMWARE, "--shard", "1/16", "--jobs", "1", "--out", "@"),
     ("generate", "--count", "20", "-o", "@"),
     ("simulate", "--seconds", "1", "--out-pcapng", "@"),
     ("test", CASES, "--target", "machine", "--format", "junit", "--out", "@"),
