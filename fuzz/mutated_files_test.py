@@ -129,7 +129,7 @@ def each(folder, group):
     done = subprocess.run(words, stdin=subprocess.DEVNULL, capture_output=True, check=False,
                           env=ENVIRONMENT)
     lines = [json.loads(line) for line in done.stdout.splitlines()]
-    found = [str(line)[-3000:] for line in lines if line["exit_code"] not in CODES]
+    found = [str(line)[:3000] for line in lines if line["exit_code"] not in CODES]
     if len(lines) != GROUP:
         found.append(f"ends with {done.returncode} or hangs after {len(lines)} files\n"
                      + done.stderr.decode(errors="replace")[-3000:])
