@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
-"""Tries fuzz/run, fuzz/smoke and fuzz/minimize on a small target with a planted bug.
+"""Tries fuzz/run, fuzz/smoke and fuzz/minimize on a small target with a planted bug, and
+mutated_files_test.py on a program that breaks at one file.
 
 Usage: fuzz/scripts_test.py [CLANG]. It works on copies of the scripts in a folder of its own.
 """
 
+import os
 import pathlib
 import shutil
 import signal
@@ -43,6 +45,17 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   rubric::first(char(data[1]), char(data[2]), char(data[3]));
   return 0;
 }
+"""
+
+PROGRAM = """#!/usr/bin/env python3
+import glob, os, sys
+if "--each" not in sys.argv:
+    sys.exit(int(os.environ["CODE"]) if "00042.yaml" in sys.argv[-1] else 0)
+for file in sorted(glob.glob(sys.argv[sys.argv.index("--each") + 1])):
+    code = os.environ["CODE"] if "00042." in file else 0
+    if code == "-9":
+        os.kill(os.getpid(), 9)
+    print('{"exit_code":%s}' % code, flush=True)
 """
 
 
@@ -148,6 +161,20 @@ class ScriptsTest(unittest.TestCase):
         self.script("minimize", "deep", "--build", build, "--prune")
         self.assertIn("bug-old.txt", self.names())
         self.assertLess(len(self.names()), len(names))
+
+    def test_mutated_files_that_break_are_told(self):
+        program = self.root / "program"
+        program.write_text(PROGRAM, encoding="utf-8")
+        program.chmod(0o755)
+        for kind, code, says in (("bin", 3, "100 files, 0 are"), ("bin", 99, "{'exit_code': 99}"),
+                                 ("yaml", 99, "ends with 99: "),
+                                 ("bin", -9, "ends with -9 or hangs after 42 files")):
+            done = subprocess.run(
+                [sys.executable, FUZZ / "mutated_files_test.py", program, kind, "100"],
+                capture_output=True, text=True, check=False,
+                env={**os.environ, "CODE": str(code), "TMPDIR": str(self.root)})
+            self.assertEqual(done.returncode, code != 3, done.stderr)
+            self.assertIn(says, done.stdout)
 
 
 if __name__ == "__main__":

@@ -3,7 +3,10 @@
 #include <iconv.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <map>
+#include <mutex>
+#include <new>
 #include <utility>
 
 namespace rubric::reflect {
@@ -28,45 +31,36 @@ std::size_t character_bytes(Encoding encoding, Bytes text) {
   return length;
 }
 
-/// Conversions of iconv(3), each opened once a thread.
-class Converters {
- public:
-  ~Converters() {
-    for (const auto& [names, open] : open_) {
-      if (open != kNone) iconv_close(open);
-    }
-  }
-
-  /// Appends what the bytes are in the other encoding, up to the first that are nothing in their
-  /// own. Returns how many bytes that took.
-  std::size_t convert(const char* from, const char* to, std::string_view bytes, std::string& out) {
-    const auto [found, fresh] = open_.try_emplace({from, to}, kNone);
-    if (fresh) found->second = iconv_open(to, from);
-    if (found->second == kNone) return 0;
-    iconv(found->second, nullptr, nullptr, nullptr, nullptr);
-    char* in = const_cast<char*>(bytes.data());  // iconv() does not write there.
-    std::size_t left = bytes.size();
-    while (left != 0) {
-      char part[256];
-      char* end = part;
-      std::size_t room = sizeof(part);
-      const std::size_t before = left;
-      const bool good = iconv(found->second, &in, &left, &end, &room) != kFault;
-      out.append(part, end);
-      if (good || left == before) break;
-    }
-    return bytes.size() - left;
-  }
-
- private:
-  static constexpr auto kFault = static_cast<std::size_t>(-1);
-  const iconv_t kNone = reinterpret_cast<iconv_t>(-1);
-  std::map<std::pair<std::string, std::string>, iconv_t> open_;
-};
-
+/// Appends what the bytes are in the other encoding, up to the first that are nothing in their own.
+/// Returns how many bytes that took. Each conversion of iconv(3) is opened once and kept for all
+/// threads: a thread's own would end the process where memory for its end is missing.
 std::size_t convert(const char* from, const char* to, std::string_view bytes, std::string& out) {
-  thread_local Converters converters;
-  return converters.convert(from, to, bytes, out);
+  static std::mutex one_at_a_time;
+  // Never destroyed, as what it holds is used to the end.
+  static auto& all = *new std::map<std::pair<std::string, std::string>, iconv_t>;
+  const std::lock_guard lock(one_at_a_time);
+  const auto none = reinterpret_cast<iconv_t>(-1);
+  auto found = all.find({from, to});
+  if (found == all.end()) {
+    const iconv_t open = iconv_open(to, from);
+    if (open == none && errno == ENOMEM) throw std::bad_alloc();
+    found = all.try_emplace({from, to}, open).first;
+  }
+  const iconv_t conversion = found->second;
+  if (conversion == none) return 0;
+  iconv(conversion, nullptr, nullptr, nullptr, nullptr);
+  char* in = const_cast<char*>(bytes.data());  // iconv() does not write there.
+  std::size_t left = bytes.size();
+  while (left != 0) {
+    char part[256];
+    char* end = part;
+    std::size_t room = sizeof(part);
+    const std::size_t before = left;
+    const bool good = iconv(conversion, &in, &left, &end, &room) != static_cast<std::size_t>(-1);
+    out.append(part, end);
+    if (good || left == before) break;
+  }
+  return bytes.size() - left;
 }
 
 constexpr const char* kUtf8Name = "UTF-8";

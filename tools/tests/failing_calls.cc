@@ -4,10 +4,17 @@
 // says which one after the begin of main(), counted from 1; FAIL_ERRNO is what it fails with, and
 // with 0 the program is killed there. How many there were goes to FAIL_COUNT, a file, when the
 // program exits or calls _exit.
+//
+// With FAIL_STEP, K, that call, the Kth after it and so on fail each in a process of its own, a
+// copy of this one at that place, which goes on to its end while this one waits. It works on a copy
+// of FAIL_FOLDER, which has the same name; so only what is in that folder may be written. FAIL_TALK
+// is a socket: the number and the copy's wait status go there as a line, and this one goes on when
+// a byte comes back. The program must have one thread and no children.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/socket.h>
 #include <sys/syscall.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -17,18 +24,72 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
+#include <string>
 
 namespace {
+
+namespace fs = std::filesystem;
+
+constexpr unsigned kPatienceS = 30;  // Of a copy.
 
 std::atomic<bool> armed{false};
 std::atomic<long> count{0};
 const char* call = "";
 long fail_at = 0;
 int fail_errno = 0;
+long step = 0;
+int talk = -1;
+
+// Gives the process places of its own in all files that it reads and writes, and makes the
+// descriptors of files of one folder lead to the same files of another.
+void move_files(const std::string& from, const std::string& to) {
+  for (const fs::directory_entry& open : fs::directory_iterator("/proc/self/fd")) {
+    const int fd = std::stoi(open.path().filename().native());
+    const std::string file = fs::read_symlink(open.path()).native();
+    if (!fs::is_regular_file(open.path())) continue;
+    const bool moves = file.rfind(from + "/", 0) == 0;
+    const std::string path = moves ? to + file.substr(from.size()) : open.path().native();
+    const int flags = ::fcntl(fd, F_GETFL) & ~(O_CREAT | O_EXCL | O_TRUNC);
+    const int copy = ::open(path.c_str(), flags);
+    ::lseek(copy, ::lseek(fd, 0, SEEK_CUR), SEEK_SET);
+    ::dup3(copy, fd, (::fcntl(fd, F_GETFD) & FD_CLOEXEC) != 0 ? O_CLOEXEC : 0);
+    ::close(copy);
+  }
+}
+
+// Returns true in a copy of the process and, after its end, false in the process.
+bool is_copy() {
+  armed = false;
+  const int error = errno;
+  const std::string folder = std::getenv("FAIL_FOLDER");
+  const std::string kept = folder + ".kept";
+  fs::rename(folder, kept);
+  fs::copy(kept, folder);
+  const pid_t pid = ::fork();
+  if (pid == 0) {
+    ::close(talk);
+    move_files(kept, folder);
+    ::alarm(kPatienceS);
+    return true;
+  }
+  int status = 0;
+  ::waitpid(pid, &status, 0);
+  ::dprintf(talk, "%ld %d\n", count.load(), status);
+  char go = 0;
+  if (pid < 0 || ::recv(talk, &go, 1, 0) != 1) std::abort();
+  fs::remove_all(folder);
+  fs::rename(kept, folder);
+  errno = error;
+  armed = true;
+  return false;
+}
 
 // Returns whether this call has to fail.
 bool fails(const char* name) {
-  if (!armed || std::strcmp(name, call) != 0 || ++count != fail_at) return false;
+  if (!armed || std::strcmp(name, call) != 0) return false;
+  const long after = ++count - fail_at;
+  if (step == 0 ? after != 0 : after < 0 || after % step != 0 || !is_copy()) return false;
   if (fail_errno == 0) std::raise(SIGKILL);
   errno = fail_errno;
   return true;
@@ -61,6 +122,8 @@ int armed_main(int argc, char** argv, char** environment) {
   call = text("FAIL_CALL", "");
   fail_at = std::atol(text("FAIL_AT", "0"));
   fail_errno = std::atoi(text("FAIL_ERRNO", "5"));
+  step = std::atol(text("FAIL_STEP", "0"));
+  talk = std::atoi(text("FAIL_TALK", "-1"));
   armed = true;
   const int code = real_main(argc, argv, environment);
   write_count();
