@@ -60,7 +60,8 @@ void check_addresses(const Kept& kept, const reflect::Frame& frame) {
   const bool one_pan = (control >> 6 & 1u) != 0;
   const bool short_dest = (control >> 10 & 3u) == 2;
   const bool short_src = (control >> 14 & 3u) == 2;
-  const bool usual = data && !secured && one_pan && short_dest && short_src;
+  const bool known = (control >> 12 & 3u) <= 1;  // The versions of 2003 and 2006.
+  const bool usual = data && !secured && one_pan && short_dest && short_src && known;
   require(frame.mac.has_addresses == usual, "short addresses of one PAN are read, others not");
   if (!usual) return require(!frame.am.present, "only data frames carry active messages");
   require(frame.mac.destpan == little(kept, 3) && frame.mac.dest == little(kept, 5) &&
