@@ -9,6 +9,7 @@
 
 #include "codec/reflect/requirements.h"
 #include "conformance/selftest/mutants/hunt.h"
+#include "conformance/test/suite/cases.h"
 #include "conformance/test/suite/causes.h"
 #include "tools/tests/readme/number.h"
 
@@ -108,6 +109,7 @@ TEST(Mutants, TheRightRuleIsBlamed) {
 // broken, and hardly ever is that of the mistake among them.
 TEST(Mutants, TheWholeSuiteCallsFewRulesBroken) {
   constexpr std::size_t kEach = 12;  // Takes a third of a second for each mutant.
+  const suite::Cases cases = suite::Cases::own();
   Blame blamed;
   Blame broken;
   std::size_t hit = 0;
@@ -127,12 +129,12 @@ TEST(Mutants, TheWholeSuiteCallsFewRulesBroken) {
     const Mutant& mutant = named().mutants[i];
     if (!named().found[i].killed) continue;
     suite::ImplementationRun all;
-    for (const CaseRef& ref : golden().cases()) {
-      suite::CaseRun& one = all.cases.emplace_back();
+    for (const suite::SuiteCase& each : cases.all()) {
+      suite::CaseRun& one = all.cases.emplace_back(each.blank);
       one.profile = "paper";
-      one.result = run(ref, mutant.factory());
+      one.result = run({each.file, each.one}, mutant.factory());
       if (one.result.failures.empty()) continue;
-      suite::compare_with_machine(ref.file->file, *ref.one, one);
+      suite::compare_with_machine(each.file->file, *each.one, one);
     }
     count(all, mutant, blamed);
     suite::find_causes(all);

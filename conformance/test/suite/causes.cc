@@ -76,6 +76,17 @@ std::string symptom_of(const Failure& failure) {
   return fmt::format("{} {}", failure.message, fmt::join(seen, " "));
 }
 
+// In how many cases a rule is blamed, and how many that name it pass.
+struct Record {
+  std::size_t broken = 0;
+  std::size_t kept = 0;
+  // A rule that is mostly kept, or hardly ever blamed, does not explain what another is blamed for.
+  bool is_as_bad_as(const Record& other) const {
+    return broken >= other.broken &&
+           broken * (other.broken + other.kept) >= other.broken * (broken + kept);
+  }
+};
+
 }  // namespace
 
 void compare_with_machine(const trace::File& head, const trace::Case& one, CaseRun& out) {
@@ -107,17 +118,26 @@ void compare_with_machine(const trace::File& head, const trace::Case& one, CaseR
 
 void find_causes(ImplementationRun& run) {
   std::vector<Failure*> left;
-  std::map<std::string, std::size_t> blames;
+  std::map<std::string, Record> records;                    // Of the rules that are blamed.
   std::map<std::string, std::set<std::string>> blamed_for;  // By symptom.
   for (CaseRun& one : run.cases) {
+    std::set<std::string> here;
     for (Failure& failure : one.result.failures) {
       if (failure.implied || failure.crash || failure.requirements.empty()) continue;
       const std::string& rule = failure.requirements.front();
-      ++blames[rule];
+      here.insert(rule);
       if (std::string symptom = symptom_of(failure); !symptom.empty()) {
         blamed_for[std::move(symptom)].insert(rule);
       }
       left.push_back(&failure);
+    }
+    for (const std::string& rule : here) ++records[rule].broken;
+  }
+  for (const CaseRun& one : run.cases) {
+    if (!one.result.failures.empty() || one.undecided()) continue;
+    for (const ReqId rule : one.requirements) {
+      const auto record = records.find(std::string(trace::requirement_text(rule)));
+      if (record != records.end()) ++record->second.kept;
     }
   }
   const auto causes = [&](const Failure& failure) {
@@ -125,7 +145,11 @@ void find_causes(ImplementationRun& run) {
     for (std::string& rule : failure.rules()) out.insert(std::move(rule));
     const auto alike = blamed_for.find(symptom_of(failure));
     if (alike != blamed_for.end()) out.insert(alike->second.begin(), alike->second.end());
-    std::erase_if(out, [&](const std::string& rule) { return !blames.contains(rule); });
+    const Record& own = records.at(failure.requirements.front());
+    std::erase_if(out, [&](const std::string& rule) {
+      const auto other = records.find(rule);
+      return other == records.end() || !other->second.is_as_bad_as(own);
+    });
     return out;
   };
   while (!left.empty()) {
@@ -138,7 +162,7 @@ void find_causes(ImplementationRun& run) {
         auto& [explains, shown, blamed] = scores[rule];
         ++explains;
         shown += looks;
-        blamed = blames.at(rule);
+        blamed = records.at(rule).broken;
       }
     }
     const std::string best =

@@ -15,7 +15,7 @@ namespace rubric::suite {
 void compare_with_machine(const trace::File& head, const trace::Case& one, CaseRun& out);
 
 /// Calls failures implied which a rule explains that explains more of them than the one they blame.
-/// It is a rule that some failure blames, so that each case still has a broken rule to name.
+/// It is a rule that failures blame in as many cases, and whose cases pass as seldom.
 void find_causes(ImplementationRun& run);
 
 }  // namespace rubric::suite
