@@ -19,8 +19,8 @@ BROKEN = {
                 "S6-DISPOSED T3-MATCH T3-SENDER T3-SUCCESS T3-TIMEOUT",
     "base_station": "N11-NBYTES N11-SHORT N8-INCOMING N8-PEIS T2-BROADCAST T3-TIMEOUT",
 }
-# Broken as well, perhaps by what breaks others: no clock, no list, neither failure nor timeout told,
-# and an ack too many.
+# Broken as well, perhaps by what breaks others: no clock, no list, neither failure nor timeout is
+# told, and an ack too many.
 FOLLOWS = {
     "firmware": {"J3-DRIFT": {"J3-TIME"}, "J3-OVERWRITE": {"J2-LISTED"}, "J5-ONCE": {"J8-FAIL"},
                  "T3-ONCE": {"T3-MATCH", "T3-TIMEOUT"}},
