@@ -9,7 +9,6 @@
 #include <set>
 #include <string_view>
 #include <tuple>
-#include <unordered_map>
 
 #include "conformance/test/runner/blame.h"
 #include "conformance/test/runner/subject_target.h"
@@ -20,7 +19,7 @@ namespace {
 
 using runner::Failure;
 
-// The rule by which a node does it, and a kind of output: node, link, message and TRANSID.
+// A kind of output: its node, link, message and TRANSID.
 using Kind = std::tuple<std::string_view, std::string_view, std::string_view, std::string_view>;
 using Done = std::map<Kind, std::vector<const trace::Line*>>;
 
@@ -32,19 +31,24 @@ Done done_in(const trace::Case& log) {
     const std::string_view trans_id = id ? std::string_view(id->text) : std::string_view();
     out[{line->node, line->link, line->message.name, trans_id}].push_back(line);
   }
+  for (auto& [kind, lines] : out) {
+    std::ranges::stable_sort(lines, {}, [](const trace::Line* one) { return one->time.from; });
+  }
   return out;
 }
 
 // Adds the rules of what the machine did before this failure, and the node less often.
 void add_left_undone(const Done& right, const Done& own, Failure& failure) {
   const auto until = [](const std::vector<const trace::Line*>& lines, runner::Ticks end) {
-    return std::ranges::count_if(lines, [&](const auto* one) { return one->time.from < end; });
+    const auto time = [](const trace::Line* one) { return one->time.from; };
+    return std::ranges::lower_bound(lines, end, {}, time) - lines.begin();
   };
   for (const auto& [kind, lines] : right) {
     if (std::get<0>(kind) != failure.node) continue;
     const auto its = own.find(kind);
     const std::ptrdiff_t done = its == own.end() ? 0 : until(its->second, failure.broken_at + 1);
-    for (std::ptrdiff_t i = done; i < until(lines, failure.from); ++i) {
+    const std::ptrdiff_t due = until(lines, failure.from);
+    for (std::ptrdiff_t i = done; i < due; ++i) {
       const auto& rules = lines[static_cast<std::size_t>(i)]->requirements;
       failure.left_undone.insert(rules.begin(), rules.end());
     }
