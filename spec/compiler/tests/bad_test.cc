@@ -48,13 +48,26 @@ std::vector<std::string> shown(const Diagnostics& diagnostics, const std::string
   return out;
 }
 
+// The project's rules, which hundreds of files are compiled with, are read once.
+Model catalogue() {
+  static const std::vector<Requirement> rules = [] {
+    Model model;
+    Diagnostics diagnostics;
+    load_requirements("spec/requirements.yaml", model, diagnostics);
+    EXPECT_EQ(diagnostics.print(), "");
+    return model.requirements;
+  }();
+  Model model;
+  model.requirements = rules;
+  return model;
+}
+
 class BadSpec : public testing::TestWithParam<std::string> {};
 
 TEST_P(BadSpec, IsRefusedWithTheDiagnosticsThatItExpects) {
   const std::string file = kFolder + GetParam() + ".ksy";
-  Model model;
+  Model model = catalogue();
   Diagnostics diagnostics;
-  load_requirements("spec/requirements.yaml", model, diagnostics);
   load_specs({file}, model, diagnostics);
   check_model(model, diagnostics);
   EXPECT_EQ(shown(diagnostics, file), expected_in(file));
@@ -78,14 +91,6 @@ TEST_P(BadRequirements, AreRefusedWithTheDiagnosticsThatTheyExpect) {
 INSTANTIATE_TEST_SUITE_P(Files, BadRequirements,
                          testing::ValuesIn(names_in(kFolder + "requirements/", ".yaml")),
                          [](const auto& one) { return one.param; });
-
-Model catalogue() {
-  Model model;
-  Diagnostics diagnostics;
-  load_requirements("spec/requirements.yaml", model, diagnostics);
-  EXPECT_EQ(diagnostics.print(), "");
-  return model;
-}
 
 class BadProfile : public testing::TestWithParam<std::string> {};
 
@@ -184,9 +189,8 @@ TEST(Diagnostics, ShowTheLineAndACaretBelowTheColumn) {
 }
 
 TEST(WireSpecs, HaveNoMistakes) {
-  Model model;
+  Model model = catalogue();
   Diagnostics diagnostics;
-  load_requirements("spec/requirements.yaml", model, diagnostics);
   load_specs(wire_specs(), model, diagnostics);
   check_model(model, diagnostics);
   EXPECT_EQ(diagnostics.print(), "");
