@@ -9,6 +9,7 @@
 #include <set>
 #include <string_view>
 #include <tuple>
+#include <utility>
 
 #include "conformance/test/runner/blame.h"
 #include "conformance/test/runner/subject_target.h"
@@ -121,7 +122,7 @@ void compare_with_machine(const trace::File& head, const trace::Case& one, CaseR
 }
 
 void find_causes(ImplementationRun& run) {
-  std::vector<Failure*> left;
+  std::vector<Failure*> blamed;
   std::map<std::string, Record> records;                    // Of the rules that are blamed.
   std::map<std::string, std::set<std::string>> blamed_for;  // By symptom.
   for (CaseRun& one : run.cases) {
@@ -133,7 +134,7 @@ void find_causes(ImplementationRun& run) {
       if (std::string symptom = symptom_of(failure); !symptom.empty()) {
         blamed_for[std::move(symptom)].insert(rule);
       }
-      left.push_back(&failure);
+      blamed.push_back(&failure);
     }
     for (const std::string& rule : here) ++records[rule].broken;
   }
@@ -144,7 +145,7 @@ void find_causes(ImplementationRun& run) {
       if (record != records.end()) ++record->second.kept;
     }
   }
-  const auto causes = [&](const Failure& failure) {
+  const auto causes_of = [&](const Failure& failure) {
     std::set<std::string> out = failure.left_undone;
     for (std::string& rule : failure.rules()) out.insert(std::move(rule));
     const auto alike = blamed_for.find(symptom_of(failure));
@@ -156,23 +157,24 @@ void find_causes(ImplementationRun& run) {
     });
     return out;
   };
+  std::vector<std::pair<Failure*, std::set<std::string>>> left;
+  for (Failure* failure : blamed) left.emplace_back(failure, causes_of(*failure));
   while (!left.empty()) {
     // How many failures a rule explains, in how many it looks like this, and how many blame it.
     std::map<std::string, std::tuple<std::size_t, std::size_t, std::size_t>> scores;
-    for (const Failure* failure : left) {
-      for (const std::string& rule : causes(*failure)) {
-        const bool looks =
-            failure->left_undone.contains(rule) || runner::shows(rule, failure->symptom);
-        auto& [explains, shown, blamed] = scores[rule];
+    for (const auto& [failure, causes] : left) {
+      for (const std::string& rule : causes) {
+        auto& [explains, shown, broken] = scores[rule];
         ++explains;
-        shown += looks;
-        blamed = records.at(rule).broken;
+        shown += failure->left_undone.contains(rule) || runner::shows(rule, failure->symptom);
+        broken = records.at(rule).broken;
       }
     }
     const std::string best =
         std::ranges::max_element(scores, {}, [](const auto& one) { return one.second; })->first;
-    std::erase_if(left, [&](Failure* failure) {
-      if (!causes(*failure).contains(best)) return false;
+    std::erase_if(left, [&](const auto& one) {
+      const auto& [failure, causes] = one;
+      if (!causes.contains(best)) return false;
       if (failure->requirements.front() != best) {
         failure->cause = best;
         failure->implied = true;
