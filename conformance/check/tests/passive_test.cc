@@ -179,11 +179,11 @@ TEST(Passive, WhatNobodyConfirmedMayNotHaveArrived) {
 }
 
 // The sink radiates a message of its own to its base station, which that one may have handed down.
-Script own_by_radio(const std::function<void(Script&)>& line) {
+Script own_by_radio(const std::function<void(Script&)>& line, double ms = 600) {
   Script script;
   script.join(0, 11, 2, 100);
   line(script);
-  script.net(600, 1, 2, message({11, 1}, {12, 2}, 50), 11);
+  script.net(ms, 1, 2, message({11, 1}, {12, 2}, 50), 11);
   return script;
 }
 
@@ -198,11 +198,16 @@ TEST(Passive, ALineOfWhichFramesAreMissingProvesNoAbsence) {
     whole(s);
   };
   EXPECT_EQ(failures_of(own_by_radio(number_missing)), "");
-  const auto confirmation_missing = [&](Script& s) {
-    s.down(300, to_mote(6)).confirm(false).net(305, 1, 2, to_mote(6), 11);
-    whole(s);
+  const auto confirmation_missing = [&](double next_ms) {
+    const auto line = [&](Script& s) {
+      s.down(300, to_mote(6)).confirm(false).net(305, 1, 2, to_mote(6), 11);
+      s.down(next_ms, to_mote(7)).confirm().net(next_ms + 5, 1, 2, to_mote(7), 11);
+    };
+    return failures_of(own_by_radio(line, next_ms + 200));
   };
-  EXPECT_EQ(failures_of(own_by_radio(confirmation_missing)), "");
+  EXPECT_EQ(confirmation_missing(400), "");
+  EXPECT_EQ(confirmation_missing(1240), "");
+  EXPECT_EQ(confirmation_missing(1300), "N6-OWN");  // The host waited for it as long as it does.
 }
 
 // Only what the sink sends up its line is captured: its host's messages are not.
