@@ -418,6 +418,21 @@ TEST(Passive, WhatComesFromOtherIslandsIsSeenOnNoLine) {
   EXPECT_TRUE(acks({11, 2}));
 }
 
+// Nothing else shows of which island the sink was before it was told the one of its host.
+TEST(Passive, AReportThatIsUnderWayShowsTheFormerIsland) {
+  const auto found = [](double reported_ms) {
+    Script script;
+    script.request(0, 4, 100).reply(10, 7, 4, 100, 10).ack_join(20, 7, 4, 100).link_ack();
+    script.dsn[11 * 65536U + 1] = script.dsn[7 * 65536U + 1];
+    script.serial(60, true, am::kConfig, {10, 0, 11}).confirm();
+    script.ack_join(80, 7, 4, 100).link_ack().joined(reported_ms, 7, 4);
+    script.join(1500, 11, 5, 200).join(2000, 12, 6, 300, 2);
+    return found_in(script);
+  };
+  EXPECT_EQ(found(110), "");
+  EXPECT_EQ(found(1000).substr(0, 8), "F:N9-SET") << "It keeps its island.";
+}
+
 TEST(Passive, ABufferIsNotFullOfWhatHasLeft) {
   const auto loses = [](double forward_ms) {  // A message each 60 ms; the fifth is lost.
     Script script;
