@@ -1,6 +1,7 @@
 #include "conformance/check/identify/serial_lines.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "conformance/check/message.h"
 
@@ -8,6 +9,7 @@ namespace rubric::check {
 namespace {
 
 constexpr std::int64_t kSerialRepeatUs = 1'500'000;  // TinyOS hosts wait 1000 ms.
+constexpr std::int64_t kUnderWayUs = 400'000;        // The response time, and the frame's.
 constexpr std::size_t kShownMax = 256;
 
 // Returns the island that a report or the source of a passing message shows, never its destination
@@ -83,6 +85,7 @@ void SerialLines::look(std::uint32_t index) {
     if (line.first == kNoIsland) {  // What it was before is not known.
       line.first = island;
       line.set_later = line.used;
+      line.first_told = !line.used;
       line.set_us = seen.place.time_us;
     }
     line.by_host = false;
@@ -98,6 +101,14 @@ void SerialLines::look(std::uint32_t index) {
   const bool known = std::ranges::find(line.its, its) != line.its.end();
   if (its != kNoIsland && !known && line.its.size() < kShownMax) line.its.push_back(its);
   if (line.told && its != kNoIsland) line.back = its != line.island ? its : kNoIsland;
+  // What was under way when it was told its island is the first that shows the former one.
+  const bool under_way = std::exchange(line.first_told, false) && seen.place.timed() &&
+                         seen.place.time_us - line.set_us <= kUnderWayUs;
+  if (under_way && reported != kNoIsland && reported != line.island) {
+    line.first = reported;
+    line.back = kNoIsland;
+    streams_.rename_island(reported, line.island);
+  }
   // A host may write under a name that is not its island's; a sink's own reports outrank it.
   const bool reports = line.by_host && reported != kNoIsland;
   if (line.island == kNoIsland || line.given || reports) {

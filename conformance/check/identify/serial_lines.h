@@ -17,6 +17,7 @@ struct SerialLine {
   bool by_host = false;            ///< Only what a host wrote down the line shows its island.
   bool told = false;               ///< A SET_ISLAND_ID was seen.
   std::uint16_t back = kNoIsland;  ///< Of which its sink says that it is since it was told another.
+  bool first_told = false;         ///< `first` is what it was told, and nothing came since.
   bool set_later = false;          ///< A SET_ISLAND_ID shows it, and some net_msg came before.
   std::int64_t set_us = 0;         ///< When that came.
   std::uint32_t last_down = 0;  ///< The last packet to the sink that asked for confirmation, + 1.

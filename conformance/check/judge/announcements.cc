@@ -53,8 +53,12 @@ void Announcements::announce(SinkWatch& sink, const Place& at, machine::Address 
                              const machine::Descriptor& descriptor, bool notice) {
   PairWatch& watch = joins_.pair(sink, address.devid);
   const ReqId content = notice ? "J6-ADD"_rule : "J6-CONTENT"_rule;
+  // An ack_join may be repeated after its sink was told another island.
+  const bool before =
+      watch.admitted.frame != 0 && watch.asked && watch.admitted.time_us >= watch.request.time_us;
+  const Place& cause = before ? watch.admitted : watch.ack;
   const bool astray =
-      address.pid != sink.island && !joins_.keeps_former(sink, address.pid, at, watch.ack.time_us);
+      address.pid != sink.island && !joins_.keeps_former(sink, address.pid, at, cause.time_us);
   // The host of a line that is only half heard may have set another island.
   const bool told = astray && context_.half_heard(sink.device);
   if (told) context_.needs_host(sink.device, at);

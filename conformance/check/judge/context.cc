@@ -11,10 +11,11 @@
 namespace rubric::check {
 namespace {
 
-constexpr std::size_t kNumbersMin = 48;         // Of a line; a fifth of all frames shows by then,
-constexpr std::size_t kNumbersMissed = 8;       // and less when so many of them must be missing.
-constexpr std::size_t kHoleShare = 50;          // Frames of the air for each hole among them.
-constexpr std::int64_t kHostWaitsUs = 900'000;  // Hosts wait 1 s for a confirmation.
+constexpr std::size_t kNumbersMin = 48;    // Of a line; a fifth of all frames shows by then,
+constexpr std::size_t kNumbersMissed = 8;  // and less when so many of them must be missing.
+constexpr std::size_t kHoleShare = 50;     // Frames of the air for each hole among them.
+// Hosts wait 1 s for a confirmation; stamps of frames on the line may be less apart.
+constexpr std::int64_t kHostWaitsUs = 950'000;
 
 // What a capture misses of the air.
 struct Missed {

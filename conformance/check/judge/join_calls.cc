@@ -440,4 +440,35 @@ void JoinCalls::finish() {
   for (std::uint16_t i = 0; i < calls_.size(); ++i) closes(i, context_.end_us(i));
 }
 
+// What calls and the link tell the hypotheses of a mote.
+
+std::uint8_t MoteJoins::expiries_min(std::uint16_t mote) const {
+  return std::min<std::uint8_t>(4, context_.profile(mote).join_requests_max);
+}
+
+std::int64_t MoteJoins::began_us(std::uint16_t mote, const MoteHypothesis& h) const {
+  const std::int64_t called_us = motes_[mote].called_us;
+  const bool its = called_us >= 0 && called_us < h.first_request_us;
+  const bool waited =
+      its && context_.busy(mote, called_us, h.first_request_us, machine::Link::kRadio);
+  return waited ? called_us : h.first_request_us;
+}
+
+bool MoteJoins::may_have_failed(std::uint16_t mote, const MoteHypothesis& h,
+                                std::int64_t now_us) const {
+  const std::int64_t expiries = expiries_min(mote) * context_.join_period_us(mote);
+  return now_us - began_us(mote, h) >= expiries - context_.early_us(mote);
+}
+
+void MoteJoins::link_told(std::uint16_t mote, std::int64_t now_us) {
+  if (mote >= context_.run.nodes.size()) return;  // A log's nodes are the first devices.
+  for (MoteHypothesis& h : motes_[mote].set) {
+    if (h.join.phase != Phase::kMember || h.acks_seen == 0) continue;
+    const std::int64_t first_us = h.acks_seen == 1 ? h.acked_us : h.accepted_us;
+    const std::int64_t last_us = std::min(now_us, h.acked_us + context_.response_us(mote));
+    const auto its = [&](std::int64_t at_us) { return at_us >= first_us && at_us <= last_us; };
+    h.linked = h.linked || std::ranges::any_of(context_.run.nodes[mote].link_acks_us, its);
+  }
+}
+
 }  // namespace rubric::check

@@ -1,6 +1,7 @@
 #include "conformance/check/judge/mote_join.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "conformance/check/links.h"
 
@@ -45,24 +46,6 @@ MoteJoins::MoteJoins(Context& context, std::size_t devices) : context_(context),
 void MoteJoins::begin_life(std::uint16_t mote) {
   motes_[mote] = MoteWatch{};
   motes_[mote].set.push_back(MoteHypothesis{});
-}
-
-std::uint8_t MoteJoins::expiries_min(std::uint16_t mote) const {
-  return std::min<std::uint8_t>(4, context_.profile(mote).join_requests_max);
-}
-
-std::int64_t MoteJoins::began_us(std::uint16_t mote, const MoteHypothesis& h) const {
-  const std::int64_t called_us = motes_[mote].called_us;
-  const bool its = called_us >= 0 && called_us < h.first_request_us;
-  const bool waited =
-      its && context_.busy(mote, called_us, h.first_request_us, machine::Link::kRadio);
-  return waited ? called_us : h.first_request_us;
-}
-
-bool MoteJoins::may_have_failed(std::uint16_t mote, const MoteHypothesis& h,
-                                std::int64_t now_us) const {
-  const std::int64_t expiries = expiries_min(mote) * context_.join_period_us(mote);
-  return now_us - began_us(mote, h) >= expiries - context_.early_us(mote);
 }
 
 // Applies a request to a hypothesis. Returns false if the hypothesis does not allow it.
@@ -140,17 +123,6 @@ void MoteJoins::request(std::uint16_t mote, const Observation& seen, const Reque
   keep(watch, next_, mote, seen);
 }
 
-void MoteJoins::link_told(std::uint16_t mote, std::int64_t now_us) {
-  if (mote >= context_.run.nodes.size()) return;  // A log's nodes are the first devices.
-  for (MoteHypothesis& h : motes_[mote].set) {
-    if (h.join.phase != Phase::kMember || h.acks_seen == 0) continue;
-    const std::int64_t first_us = h.acks_seen == 1 ? h.acked_us : h.accepted_us;
-    const std::int64_t last_us = std::min(now_us, h.acked_us + context_.response_us(mote));
-    const auto its = [&](std::int64_t at_us) { return at_us >= first_us && at_us <= last_us; };
-    h.linked = h.linked || std::ranges::any_of(context_.run.nodes[mote].link_acks_us, its);
-  }
-}
-
 void MoteJoins::refuse_request(std::uint16_t mote, const Observation& seen, const Request& request,
                                bool as_member) {
   MoteWatch& watch = motes_[mote];
@@ -198,6 +170,14 @@ void MoteJoins::refuse_request(std::uint16_t mote, const Observation& seen, cons
   }
   said.hypotheses = explanations(mote, watch.set, said.text);
   context_.report(rule, severity, seen.place, mote, std::move(said));
+  if (rule == "J5-STOP"_rule && !h.sent && !h.told && !h.linked) {
+    MoteHypothesis unheard = h;
+    unheard.confirmed = false;
+    if (next_request(mote, unheard, now, request, next_)) return keep(watch, next_, mote, seen);
+  }
+  if (rule == "J5-STOP"_rule && !same) {
+    watch.asked = MemberAsked{h.join.address, request.seq_num, now};
+  }
   // Go on from what was seen: the call runs, and this was its latest request.
   MoteHypothesis next = h;
   if (h.join.phase == Phase::kMember && (same || as_member)) {
@@ -323,6 +303,7 @@ void MoteJoins::ack_join(std::uint16_t mote, const Observation& seen, const AckJ
                          bool confirmed) {
   MoteWatch& watch = motes_[mote];
   next_.clear();
+  watch.asked.reset();
   for (const MoteHypothesis& h : watch.set) {
     MoteHypothesis next = h;
     // Of such an offer it may have taken the island alone.
@@ -441,6 +422,23 @@ void MoteJoins::refuse_ack(std::uint16_t mote, const Observation& seen, const Ac
   watch.set.assign(1, unknown);
 }
 
+// Reports that a member asked for a join, if it goes on as that member: had it started anew, it
+// would have joined before it sent. Returns whether it did.
+bool MoteJoins::asked_as_member(std::uint16_t mote, const Place& at, machine::Address src,
+                                bool only) {
+  const std::optional<MemberAsked> asked = std::exchange(motes_[mote].asked, std::nullopt);
+  if (!asked || asked->address != src) return false;
+  const Severity severity = context_.without(mote, asked->time_us, at.time_us);
+  context_.report(
+      "J5-STOP"_rule, only ? severity : std::min(severity, Severity::kInconclusive), at, mote,
+      {"A net_msg with src " + text_of(src) + ", as before the join_request with number " +
+           number(asked->seq_num) + ", sent " + ms_text(at.time_us - asked->time_us) +
+           " ago, and without another ack_join: it had joined when it asked.",
+       "No join_request of a mote that is joined.",
+       {}});
+  return true;
+}
+
 void MoteJoins::net_msg(std::uint16_t mote, const Observation& seen, const Net& net) {
   MoteWatch& watch = motes_[mote];
   std::vector<MoteHypothesis>& set = watch.set;
@@ -479,9 +477,10 @@ void MoteJoins::net_msg(std::uint16_t mote, const Observation& seen, const Net& 
            later.frame.type == am::kAckJoin && later.frame.src == am;
   };
   const bool ack_follows = context_.next(now, context_.response_us(mote), acks) != nullptr;
+  const bool blamed = !ack_follows && asked_as_member(mote, seen.place, net.src, only);
   for (MoteHypothesis& h : set) {
     const bool was_unknown = h.unknown;
-    if (!was_unknown && h.acks_seen == 0 && !ack_follows &&
+    if (!was_unknown && h.acks_seen == 0 && !ack_follows && !blamed &&
         context_.without(mote, h.accepted_us, now) == Severity::kFail) {
       context_.report("J4-ACK"_rule, only ? Severity::kFail : Severity::kInconclusive, seen.place,
                       mote,
@@ -524,8 +523,10 @@ void MoteJoins::net_msg(std::uint16_t mote, const Observation& seen, const Net& 
   Severity severity = ever && watch.booted_us < 0 ? context_.without_ever(mote, now)
                                                   : context_.without(mote, since, now);
   if (!only) severity = std::min(severity, Severity::kInconclusive);
-  context_.report(member ? "N1-SRC"_rule : "J11-SEND"_rule, severity, seen.place, mote,
-                  std::move(said));
+  if (!blamed) {
+    context_.report(member ? "N1-SRC"_rule : "J11-SEND"_rule, severity, seen.place, mote,
+                    std::move(said));
+  }
   MoteHypothesis next;
   next.join.phase = Phase::kMember;
   next.join.address = net.src;

@@ -40,7 +40,8 @@
 // because a frame escaped. Where one would explain what was seen, the severity is that of
 // Context::without(): a failure only if none can have escaped. So it is with a net_msg before the
 // join and with an ack_join that fits the mote's own request. A request with a number that changed
-// is inconclusive, and so is one of a mote that only a link ack shows to have joined. What no
+// is inconclusive, and so is one of a mote that only a link ack shows to have joined; one that goes
+// on as the member that it was before it asked did not start anew, and is blamed for it. What no
 // escaped frame would put right fails at once: a request to another address, one too early or one
 // too many with the same number, an ack_join that fits no request of the mote.
 #pragma once
@@ -75,12 +76,20 @@ struct MoteHypothesis {
   bool wrong = false;            ///< It surely has another address than it shows.
 };
 
+/// A request of a member with another number, as that of a new call: it may have lost its power.
+struct MemberAsked {
+  machine::Address address;  ///< That it had.
+  std::uint16_t seq_num = 0;
+  std::int64_t time_us = 0;
+};
+
 /// A mote, through its lives.
 struct MoteWatch {
   std::vector<MoteHypothesis> set;
   std::optional<Reply> wrong_reply;  ///< The last that its request had not asked for.
   Place wrong_place;
-  std::int64_t booted_us = -1;  ///< By its log; -1: it shows no start.
+  std::optional<MemberAsked> asked;  ///< It has not joined since.
+  std::int64_t booted_us = -1;       ///< By its log; -1: it shows no start.
   std::int64_t called_us = -1;  ///< Its last call of joinIsland began, by its log; -1: none did.
 };
 
@@ -140,6 +149,7 @@ class MoteJoins {
                     const Request& request, std::vector<MoteHypothesis>& out);
   void refuse_request(std::uint16_t mote, const Observation& seen, const Request& request,
                       bool as_member);
+  bool asked_as_member(std::uint16_t mote, const Place& at, machine::Address src, bool only);
   std::uint16_t sink_of(std::uint16_t island) const;
   ReqId why_not_ack(std::uint16_t mote, const MoteHypothesis& h, const Observation& seen,
                     const AckJoin& ack) const;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 
 #include "codec/reflect/requirements.h"
 #include "conformance/check/judge/findings.h"
@@ -77,6 +78,7 @@ const Fault kFaults[] = {
        s.radio(420, 4, 1, am::kAckJoin, p);
      }},
     {"member_asks_again", "J5-STOP", [](Script& s) { s.request(900, 2, 100); }},
+    {"member_asks_with_another_number", "J5-STOP", [](Script& s) { s.request(900, 2, 101); }},
     {"reply_with_another_number", "J3-SEQ",
      [](Script& s) { s.request(400, 4, 300).reply(410, 11, 4, 301, 410); }},
     {"wrong_number_accepted", "J3-SEQ J4-SEQ",
@@ -413,6 +415,48 @@ TEST(Judge, AMessageFromAnotherAddressIsJudgedSinceTheLastFromItsOwn) {
     ASSERT_NE(found, report.findings.end());
     EXPECT_EQ(found->severity, own == 0 ? Severity::kInconclusive : Severity::kFail);
   }
+}
+
+// It asked with another number, and goes on as before.
+TEST(Judge, AMemberThatAskedIsBlamedForThatAlone) {
+  const auto asks = [](std::uint16_t island) {
+    Script script;
+    script.join(0, 11, 2, 100).net(200, 2, 1, update(2, 1)).up(215, update(2, 1).forwarded());
+    script.request(900, 2, 101);
+    if (island != 0) script.reply(910, island, 2, 101, 910);
+    return script;
+  };
+  for (const std::uint16_t island :
+       std::array<std::uint16_t, 2>{0, 12}) {  // Nobody answered; another sink did.
+    Script script = asks(island);
+    script.net(1600, 2, 1, update(2, 2)).up(1615, update(2, 2).forwarded());
+    EXPECT_EQ(found_in(script), "I:J5-STOP F:J5-STOP") << island;
+    Script missed = asks(island);  // A later join may have escaped.
+    ++missed.dsn[2];
+    missed.net(1600, 2, 1, update(2, 2)).up(1615, update(2, 2).forwarded());
+    EXPECT_EQ(found_in(missed, false).find("F:"), std::string::npos) << found_in(missed, false);
+  }
+  Script restarted = asks(12);  // It may have lost its power.
+  restarted.ack_join(920, 12, 2, 101).link_ack().joined(940, 12, 2, 2);
+  NetFields net = update(2, 2);
+  net.dest.pid = net.src.pid = 12;
+  restarted.net(1600, 2, 1, net).up(1615, net.forwarded(), 2);
+  EXPECT_EQ(found_in(restarted), "I:J5-STOP");
+}
+
+// Its timer runs on, with another number for each request, if it did not hear the link ack.
+TEST(Judge, AMemberMayAskUntilItHearsThatItsAckJoinCame) {
+  Script script;
+  script.join(0, 11, 2, 100).request(600, 2, 101);
+  script.net(700, 2, 1, update(2, 1)).up(715, update(2, 1).forwarded());
+  EXPECT_EQ(found_in(script), "I:J5-STOP");
+  Script early;
+  early.join(0, 11, 2, 100).request(300, 2, 101);
+  early.net(700, 2, 1, update(2, 1)).up(715, update(2, 1).forwarded());
+  EXPECT_EQ(found_in(early), "I:J5-STOP F:J5-STOP");
+  script.request(1700, 2, 102);
+  script.net(2000, 2, 1, update(2, 2)).up(2015, update(2, 2).forwarded());
+  EXPECT_EQ(found_in(script), "I:J5-STOP I:J5-STOP F:J5-STOP");
 }
 
 TEST(Judge, OneCauseBreaksOneRule) {

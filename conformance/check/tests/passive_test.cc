@@ -179,11 +179,11 @@ TEST(Passive, WhatNobodyConfirmedMayNotHaveArrived) {
 }
 
 // The sink radiates a message of its own to its base station, which that one may have handed down.
-Script own_by_radio(const std::function<void(Script&)>& line) {
+Script own_by_radio(const std::function<void(Script&)>& line, double ms = 600) {
   Script script;
   script.join(0, 11, 2, 100);
   line(script);
-  script.net(600, 1, 2, message({11, 1}, {12, 2}, 50), 11);
+  script.net(ms, 1, 2, message({11, 1}, {12, 2}, 50), 11);
   return script;
 }
 
@@ -198,11 +198,16 @@ TEST(Passive, ALineOfWhichFramesAreMissingProvesNoAbsence) {
     whole(s);
   };
   EXPECT_EQ(failures_of(own_by_radio(number_missing)), "");
-  const auto confirmation_missing = [&](Script& s) {
-    s.down(300, to_mote(6)).confirm(false).net(305, 1, 2, to_mote(6), 11);
-    whole(s);
+  const auto confirmation_missing = [&](double next_ms) {
+    const auto line = [&](Script& s) {
+      s.down(300, to_mote(6)).confirm(false).net(305, 1, 2, to_mote(6), 11);
+      s.down(next_ms, to_mote(7)).confirm().net(next_ms + 5, 1, 2, to_mote(7), 11);
+    };
+    return failures_of(own_by_radio(line, next_ms + 200));
   };
-  EXPECT_EQ(failures_of(own_by_radio(confirmation_missing)), "");
+  EXPECT_EQ(confirmation_missing(400), "");
+  EXPECT_EQ(confirmation_missing(1240), "");
+  EXPECT_EQ(confirmation_missing(1300), "N6-OWN");  // The host waited for it as long as it does.
 }
 
 // Only what the sink sends up its line is captured: its host's messages are not.
@@ -411,6 +416,21 @@ TEST(Passive, WhatComesFromOtherIslandsIsSeenOnNoLine) {
   };
   EXPECT_FALSE(acks({12, 8}));
   EXPECT_TRUE(acks({11, 2}));
+}
+
+// Nothing else shows of which island the sink was before it was told the one of its host.
+TEST(Passive, AReportThatIsUnderWayShowsTheFormerIsland) {
+  const auto found = [](double reported_ms) {
+    Script script;
+    script.request(0, 4, 100).reply(10, 7, 4, 100, 10).ack_join(20, 7, 4, 100).link_ack();
+    script.dsn[11 * 65536U + 1] = script.dsn[7 * 65536U + 1];
+    script.serial(60, true, am::kConfig, {10, 0, 11}).confirm();
+    script.ack_join(80, 7, 4, 100).link_ack().joined(reported_ms, 7, 4);
+    script.join(1500, 11, 5, 200).join(2000, 12, 6, 300, 2);
+    return found_in(script);
+  };
+  EXPECT_EQ(found(110), "");
+  EXPECT_EQ(found(1000).substr(0, 8), "F:N9-SET") << "It keeps its island.";
 }
 
 TEST(Passive, ABufferIsNotFullOfWhatHasLeft) {

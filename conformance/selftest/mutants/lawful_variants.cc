@@ -235,6 +235,17 @@ void cut_on_serial(Moment&, Transmit& frame) {
   frame.size_bytes = static_cast<std::uint8_t>(12 + frame.payload[net::kNbytes]);
 }
 
+// Lets the connections of a new channel hold what was in the memory before.
+void free_values(Moment& moment) {
+  auto& channels = moment.state.synaptic;
+  const std::size_t outputs = channels.out.size();
+  const std::size_t inputs = channels.in.size();
+  moment.honest();
+  constexpr std::uint32_t kStale = 0xD1A7'05EE;
+  if (channels.out.size() > outputs) (channels.out.end() - 1)->value_bits.fill(kStale);
+  if (channels.in.size() > inputs) (channels.in.end() - 1)->value_bits.fill(kStale);
+}
+
 // Says something of its own by radio whenever anything happens.
 void beacons(Moment& moment) {
   const auto& radio = moment.state.radio;
@@ -271,6 +282,8 @@ void add_messages(Variants& out) {
                  })});
   out.push_back({"app_id_learning", "Synaptic data have APPID LEARNING (120).",
                  sent_field(is_synaptic, net::kAppId, 6)});
+  out.push_back({"free_values", "A connection that was never written holds anything (120).",
+                 always(free_values)});
   out.push_back({"told_first", "In a step, events for the application come before frames.",
                  always(other_order)});
   out.push_back({"own_frames_besides", "A node beacons with a type of its own all the time (124).",

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "codec/reflect/requirements.h"
+#include "conformance/selftest/mutants/fields.h"
 #include "conformance/selftest/mutants/hunt.h"
 #include "conformance/test/suite/cases.h"
 #include "conformance/test/suite/causes.h"
@@ -153,6 +154,48 @@ TEST(Mutants, TheWholeSuiteCallsFewRulesBroken) {
 }
 
 // The nearest miss of a failure has the message that was expected, and is in its window.
+// Makes a wrapper that acks what must not be acked, 800 ticks after it came by its line.
+StepMaker acking_late(bool (*which)(const Forged&)) {
+  return [=]() -> Step {
+    return [=](Moment& moment) {
+      const Frame* const frame = moment.heard(am::kNet);
+      Forged* const forged = frame == nullptr ? nullptr : &moment.forge(*frame);
+      if (forged == nullptr || !which(*forged)) return moment.honest();
+      forged->bytes[net::kReliable] = 1;
+      const bool sink = moment.is(Role::kSink);
+      put(*forged, net::kDestDevid, sink ? own(moment).devid : machine::kNullDevid);
+      moment.honest(machine::Heard{forged->frame});
+      moment.rewrite([&](const Action& action) { moment.hold(action, 800); });
+    };
+  };
+}
+
+// The message that it answers is told by its number, also where the next one has come.
+TEST(Mutants, AnAckThatComesLateIsBlamedForItsMessage) {
+  const auto blamed = [](const CaseRef& ref, const StepMaker& step) {
+    std::set<std::string> out;
+    for (const runner::Failure& failure : run(ref, wrapped(step)).failures) {
+      out.insert(failure.requirements.begin(), failure.requirements.end());
+    }
+    return out;
+  };
+  using Rules = std::set<std::string>;
+  int tried = 0;
+  for (const CaseRef& ref : golden().cases()) {
+    if (ref.one->name != "t2.sink_line" && ref.one->name != "t2.base_station_line") continue;
+    ++tried;
+    EXPECT_EQ(blamed(ref, acking_late([](const Forged& heard) {
+                       return heard.bytes[net::kReliable] == 0;
+                     })),
+              Rules{"T2-UNRELIABLE"});
+    EXPECT_EQ(blamed(ref, acking_late([](const Forged& heard) {
+                       return get(heard, net::kDestDevid) == machine::kBroadcastDevid;
+                     })),
+              Rules{"T2-BROADCAST"});
+  }
+  EXPECT_EQ(tried, 2);
+}
+
 TEST(Mutants, NearestHintsAreOfTheMessageAndInItsWindow) {
   const std::regex nearest(R"(^nearest, at (\d+): \S+ (\w+)\()");
   std::size_t hints = 0;

@@ -64,7 +64,7 @@ struct Options {
   /// Wall-clock limit for the answer to a command, and for opening a line.
   std::chrono::milliseconds step_timeout{5000};
   /// The same for the first command, `hello`, while an interpreter or an emulator starts, and for a
-  /// node that connects to us.
+  /// node that connects to us. If that did not come, it has `step_timeout` in the next cases.
   std::chrono::milliseconds start_timeout{20000};
   trace::Statement stated = {};  ///< Counts more than what the implementation states itself.
   /// A command that uses rct/1 for what a line does not show (AppChannel); empty: none.

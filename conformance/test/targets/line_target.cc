@@ -313,7 +313,9 @@ std::unique_ptr<runner::Target> LineAttachment::target() {
 }
 
 void NodeLine::open() {
-  const bool starts = node.comes_to_us && (!opened || node.restarts);
+  // One that has not come is hardly about to start: the next cases need not wait for it as long.
+  const bool starts = node.comes_to_us && (!opened || node.restarts) && !absent;
+  absent = true;
   const lines::SteadyTime end =
       steady_clock::now() + (starts ? options.start_timeout : options.step_timeout);
   while (true) {
@@ -326,6 +328,7 @@ void NodeLine::open() {
     }
   }
   opened = true;
+  absent = false;
 }
 
 void LineAttachment::finish() {

@@ -77,6 +77,7 @@ struct NodeLine {
   LineNode node;
   Options options;
   bool opened = false;           ///< Once, at least.
+  bool absent = false;           ///< The node did not come when it was last awaited.
   bool is_new = false;           ///< It was opened, and the node has not been awaited since.
   lines::SteadyTime last_given;  ///< In any case.
   std::string notes;

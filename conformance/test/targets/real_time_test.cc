@@ -201,6 +201,31 @@ TEST(RealTime, BaseStationThatIsStartedAnew) {
   EXPECT_EQ(station.lives(), 3);
 }
 
+// Each case would wait for the start of one that has died for good.
+TEST(RealTime, ABaseStationThatDoesNotComeBackIsAwaitedInOneCase) {
+  const Options options{lines::Milliseconds(700), lines::Milliseconds(3000)};
+  const std::uint16_t port = free_port();
+  const auto attachment = attach(fmt::format("sf-server:{}:restart", port), options);
+  const machine::Config config = config_of(machine::Role::kBaseStation, 11);
+  const auto await_absent = [&] {
+    const auto before = steady_clock::now();
+    const runner::CaseResult result = run(*attachment, "base_station.ack");
+    EXPECT_EQ(result.verdict, CaseVerdict::kError);
+    EXPECT_EQ(result.reason, fmt::format("nobody connects to 127.0.0.1:{}", port));
+    return steady_clock::now() - before;
+  };
+  {
+    const RealNode mortal(forwarder_to(port), config, std::make_unique<runner::Machine>(), {}, 1);
+    expect(CaseVerdict::kPass, *attachment, "base_station.ack");
+  }
+  EXPECT_GE(await_absent(), options.start_timeout);
+  EXPECT_LT(await_absent(), options.start_timeout);
+  const RealNode back(forwarder_to(port), config);
+  for (int round = 0; round < 2; ++round) {
+    expect(CaseVerdict::kPass, *attachment, "base_station.ack");
+  }
+}
+
 TEST(RealTime, SerialLineThroughTcp) {
   const std::uint16_t port = free_port();
   std::unique_ptr<MoteEnd> end = mote_at(port);
