@@ -316,7 +316,7 @@ class File(Folder):
         self.assertEqual(line.stdout.split(), ["01", "00", "02"], line.stderr)
 
     def test_parameters_lists_and_other_encodings_are_written_as_they_are_read(self):
-        for name in ("lists", "computed"):
+        for name in ("lists", "computed", "wide"):
             args = ["--spec", f"spec/kaitai_check/{name}.ksy"]
             made = rubric("generate", *args, "--message", name, "--count", "60").stdout
             raw = "".join(json.loads(line)["raw"] + "\n" for line in made.splitlines())
