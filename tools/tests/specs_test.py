@@ -489,6 +489,13 @@ class File(Folder):
         self.assertIn(f"{file}:15:11: error: unknown type 'tinyos::am_header'; there is none here",
                       rubric("decode", "--spec", file, stdin=BLINK).stderr)
 
+    def test_files_may_import_one_another(self):
+        for one, other in (("ay", "bee"), ("bee", "ay")):
+            file = self.file(f"meta: {{id: {one}, endian: be, imports: [{other}]}}\ntypes:\n"
+                             f"  {one}_part: {{seq: [{{id: a, type: u1}}]}}\n  whole: {{seq: "
+                             f"[{{id: b, type: '{other}::{other}_part'}}]}}\n", f"{one}.ksy")
+        self.assertIn("=3", rubric("decode", "--spec", file, "--as", "whole", stdin="03").stdout)
+
     def test_mistakes_are_shown_as_by_the_compiler(self):
         file = self.file(PLAIN.replace("u2", "u9"))
         done = rubric("decode", "--spec", file, stdin="")
