@@ -392,7 +392,8 @@ class FieldChange {
     if (way < 5) {
       value = allowed_value(f, random_);
     } else if (way == 5) {
-      value = now + (random_.chance(0.5) ? 1 : -1);
+      const auto bits = static_cast<std::uint64_t>(now);  // The greatest has one after it, too: 0.
+      value = static_cast<std::int64_t>(random_.chance(0.5) ? bits + 1 : bits - 1);
     } else if (way == 6) {
       value = now ^ std::int64_t{1} << random_.below(8u * f.width_bytes);
     } else if (!refused_value(f, random_, value)) {

@@ -17,6 +17,14 @@ constexpr std::uint32_t kFloats[] = {
     0x7F7FFFFF, 0x7F800000, 0xFF800000, 0x7FC00000, 0x7F800001,
 };
 
+// The numbers around the greatest that int64 and a double of a whole number have, and the greatest.
+constexpr std::uint64_t kWide[] = {
+    0x7FFFFFFFFFFFFFFF,
+    0x8000000000000000,
+    0x20000000000001,
+    0xFFFFFFFFFFFFFFFF,
+};
+
 template <class T, std::size_t kCount>
 T one_of(const T (&values)[kCount], Random& random) {
   return values[random.below(kCount)];
@@ -52,13 +60,17 @@ std::uint8_t any_byte(Random& random) {
 
 Span held(const Field& field) {
   const int bits = field.kind == Kind::kBits ? field.bit_width : 8 * field.width_bytes;
-  if (field.kind != Kind::kSint) return {0, (std::int64_t{1} << bits) - 1};
-  return {-(std::int64_t{1} << (bits - 1)), (std::int64_t{1} << (bits - 1)) - 1};
+  // Of 64 bits without a sign, what an int64 holds: those that have no rule get more elsewhere.
+  const std::uint64_t most = ~std::uint64_t{0} >> (64 - bits + field.is_wide());
+  if (field.kind != Kind::kSint) return {0, static_cast<std::int64_t>(most)};
+  return {-static_cast<std::int64_t>(most / 2) - 1, static_cast<std::int64_t>(most / 2)};
 }
 
 Span allowed(const Field& field) {
   const Valid& valid = field.valid;
-  if (valid.kind == ValidKind::kRange) return {valid.min, valid.max};
+  if (valid.kind == ValidKind::kRange) {
+    return {valid.min, valid.max < valid.min ? held(field).max : valid.max};
+  }
   if (valid.kind == ValidKind::kOneOf && valid.one_of_count) {
     const auto [least, most] = std::minmax_element(valid.one_of, valid.one_of + valid.one_of_count);
     return {*least, *most};
@@ -82,6 +94,9 @@ std::int64_t allowed_value(const Field& field, std::int64_t most, Random& random
     return static_cast<std::int64_t>(random.next() >> 32);
   }
   if (field.valid.kind == ValidKind::kOneOf) return one_of_allowed(field.valid, most, random);
+  if (field.is_wide() && field.valid.kind == ValidKind::kAny && random.chance(0.4)) {
+    return static_cast<std::int64_t>(random.chance(0.5) ? random.next() : one_of(kWide, random));
+  }
   Span span = allowed(field);
   span.max = std::max(span.min, std::min(span.max, most));
   if (field.expect >= 0 && field.expect <= span.max && random.chance(0.8)) return field.expect;
@@ -100,7 +115,9 @@ bool refused_value(const Field& field, Random& random, std::int64_t& value) {
   if (field.valid.kind == ValidKind::kAny || field.kind == Kind::kFloat) return false;
   const Span all = held(field);
   const Span good = allowed(field);
-  const std::int64_t near[] = {good.min - 1, good.max + 1, all.min, all.max};
+  const auto after = static_cast<std::int64_t>(static_cast<std::uint64_t>(good.max) + 1);
+  const auto before = static_cast<std::int64_t>(static_cast<std::uint64_t>(good.min) - 1);
+  const std::int64_t near[] = {before, after, all.min, all.max};
   constexpr int kTries = 40;  // A rule that refuses but a few values is met by its neighbours.
   for (int i = 0; i < kTries; ++i) {
     value =

@@ -8,12 +8,16 @@
 namespace rubric::reflect {
 namespace {
 
-__attribute__((noinline)) std::int64_t load_bits(const Field& field, const std::uint8_t* at) {
+__attribute__((noinline)) std::uint64_t load_bytes(const Field& field, const std::uint8_t* at) {
   std::uint64_t raw = 0;
   for (int i = 0; i < field.width_bytes; ++i) {
     raw = raw << 8 | at[field.little_endian ? field.width_bytes - 1 - i : i];
   }
-  raw >>= field.bit_shift;
+  return raw;
+}
+
+std::int64_t load_bits(const Field& field, const std::uint8_t* at) {
+  const std::uint64_t raw = load_bytes(field, at) >> field.bit_shift;
   return static_cast<std::int64_t>(raw & ((std::uint64_t{1} << field.bit_width) - 1));
 }
 
@@ -24,6 +28,8 @@ RUBRIC_INLINE std::int64_t load(const Field& field, const std::uint8_t* at) {
     raw = load_u8(at);
   } else if (field.width_bytes == 2) {
     raw = field.little_endian ? load_le16(at) : load_be16(at);
+  } else if (__builtin_expect(field.width_bytes == 8, 0)) {
+    return static_cast<std::int64_t>(load_bytes(field, at));
   } else {
     raw = field.little_endian ? load_le32(at) : load_be32(at);
   }
@@ -211,7 +217,7 @@ class Decoder {
 
   bool valid(const Field& f, std::int64_t value, std::uint32_t at) {
     if (f.valid.kind == ValidKind::kRange) {
-      if (value >= f.valid.min && value <= f.valid.max) return true;
+      if (Valid::within(value, f.valid.min, f.valid.max)) return true;
       return set_error(Fault::kOutOfRange, at, f, value);
     }
     for (int i = 0; i < f.valid.one_of_count; ++i) {

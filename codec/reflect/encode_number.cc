@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "codec/reflect/encode.h"
+#include "codec/reflect/fault_text.h"
 
 namespace rubric::reflect {
 namespace {
@@ -23,8 +24,9 @@ struct Bounds {
 Bounds bounds(const Field& f) {
   const int bits = f.kind == Kind::kBits ? f.bit_width : 8 * f.width_bytes;
   if (f.valid.kind == ValidKind::kRange) return {f.valid.min, f.valid.max};
-  if (f.kind != Kind::kSint) return {0, (std::int64_t{1} << bits) - 1};
-  return {-(std::int64_t{1} << (bits - 1)), (std::int64_t{1} << (bits - 1)) - 1};
+  const std::uint64_t most = ~std::uint64_t{0} >> (64 - bits);
+  if (f.kind != Kind::kSint) return {0, static_cast<std::int64_t>(most)};
+  return {-static_cast<std::int64_t>(most / 2) - 1, static_cast<std::int64_t>(most / 2)};
 }
 
 std::string quoted(std::string_view name) { return '"' + std::string(name) + '"'; }
@@ -88,7 +90,14 @@ NumberResult named(const Field& f, const std::string& name) {
 
 NumberResult plain(const Field& f, const Value& value) {
   if (f.kind == Kind::kFloat) return float_of(value);
-  if (value.is(Value::Kind::kInteger)) {
+  // Numbers above int64 come as they are written.
+  if (f.is_wide() && value.is(Value::Kind::kReal)) {
+    std::uint64_t number = 0;
+    const char* const end = value.text.data() + value.text.size();
+    const auto [stop, error] = std::from_chars(value.text.data(), end, number);
+    if (error == std::errc{} && stop == end) return good(static_cast<std::int64_t>(number));
+  }
+  if (value.is(Value::Kind::kInteger) && !(f.is_wide() && value.integer < 0)) {
     const std::string text = number_problem(f, value.integer);
     return text.empty() ? good(value.integer) : problem(text);
   }
@@ -113,8 +122,9 @@ NumberResult beside(const Field& f, const std::string& key, const Value& other,
   if (!result.problem.empty()) {
     result.problem = key + ": " + result.problem;
   } else if (given && given->value != result.value) {
-    return problem("is given as " + to_string(given->value) + ", but " + key + " says " +
-                   to_string(result.value) + "; expected one of them alone, or both the same");
+    return problem("is given as " + integer_text(f, given->value) + ", but " + key + " says " +
+                   integer_text(f, result.value) +
+                   "; expected one of them alone, or both the same");
   }
   return result;
 }
@@ -160,9 +170,9 @@ std::string number_problem(const Field& f, std::int64_t value) {
     }
   } else {
     const Bounds allowed = bounds(f);
-    if (value >= allowed.min && value <= allowed.max) return {};
+    if (Valid::within(value, allowed.min, allowed.max)) return {};
   }
-  return "expected " + expectation(f) + ", given " + to_string(value);
+  return "expected " + expectation(f) + ", given " + integer_text(f, value);
 }
 
 std::string expectation(const Field& f) {
@@ -175,7 +185,8 @@ std::string expectation(const Field& f) {
     return values;
   }
   const Bounds allowed = bounds(f);
-  std::string text = "a number from " + to_string(allowed.min) + " to " + to_string(allowed.max);
+  std::string text =
+      "a number from " + integer_text(f, allowed.min) + " to " + integer_text(f, allowed.max);
   if (f.enumeration) text += " or a name of " + std::string(f.enumeration->name);
   if (f.mask) text += " or an array of bits of " + std::string(f.mask->name);
   return text;
@@ -203,6 +214,11 @@ void store_number(const Field& f, std::int64_t value, std::uint8_t* at) {
     case 2: {
       const auto half = static_cast<std::uint16_t>(raw);
       return f.little_endian ? store_le16(at, half) : store_be16(at, half);
+    }
+    case 8: {
+      const auto high = static_cast<std::uint32_t>(static_cast<std::uint64_t>(value) >> 32);
+      f.little_endian ? store_le32(at, raw) : store_be32(at, high);
+      return f.little_endian ? store_le32(at + 4, high) : store_be32(at + 4, raw);
     }
     default: return f.little_endian ? store_le32(at, raw) : store_be32(at, raw);
   }

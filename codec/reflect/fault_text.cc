@@ -56,7 +56,8 @@ std::uint16_t serial_crc(const Packet& packet) {
 std::string allowed(const Field& field) {
   const Valid& valid = field.valid;
   if (valid.kind == ValidKind::kRange) {
-    return ", allowed are " + std::to_string(valid.min) + " to " + std::to_string(valid.max);
+    return ", allowed are " + integer_text(field, valid.min) + " to " +
+           integer_text(field, valid.max);
   }
   std::string text = valid.one_of_count == 1 ? ", must be " : ", must be one of ";
   for (int i = 0; i < valid.one_of_count; ++i) {
@@ -119,9 +120,14 @@ std::string_view fault_sentence(Fault fault) {
   return i < std::size(kFaults) ? kFaults[i].sentence : "unknown fault";
 }
 
+std::string integer_text(const Field& field, std::int64_t value) {
+  return field.is_wide() ? std::to_string(static_cast<std::uint64_t>(value))
+                         : std::to_string(value);
+}
+
 std::string number_text(const Field& field, std::int64_t value) {
   const char* name = field.enumeration ? enum_name(*field.enumeration, value) : nullptr;
-  return name ? std::to_string(value) + " (" + name + ")" : std::to_string(value);
+  return integer_text(field, value) + (name ? " (" + std::string(name) + ")" : "");
 }
 
 std::string error_text(const Decoded& decoded) {

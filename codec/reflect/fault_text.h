@@ -29,6 +29,8 @@ std::string_view note_name(NoteKind kind);
 /// Returns one sentence for a note, without its full stop.
 std::string note_text(const Note& note);
 
+/// Returns an integer of a field in decimal digits.
+std::string integer_text(const Field& field, std::int64_t value);
 /// Returns a field's number with its name if it has one: "1 (cc1000)".
 std::string number_text(const Field& field, std::int64_t value);
 

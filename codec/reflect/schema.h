@@ -79,7 +79,8 @@ struct Expr {
 };
 constexpr int kMaxExprDepth = 8;
 
-/// The allowed values of an integer. Values compare as unsigned (as signed for Kind::kSint).
+/// The allowed values of an integer. Values compare as unsigned (as signed for Kind::kSint); those
+/// of Field::is_wide() are kept as the same bits.
 enum class ValidKind : uint8_t { kAny, kRange, kOneOf };
 struct Valid {
   ValidKind kind;
@@ -87,6 +88,12 @@ struct Valid {
   int64_t max;            ///< kRange.
   const int64_t* one_of;  ///< kOneOf.
   uint8_t one_of_count;
+
+  /// Returns whether a value lies between two, both included, with a sign or without.
+  static constexpr bool within(int64_t value, int64_t least, int64_t most) {
+    return static_cast<uint64_t>(value) - static_cast<uint64_t>(least) <=
+           static_cast<uint64_t>(most) - static_cast<uint64_t>(least);
+  }
 };
 
 /// Physical value = raw * scale + offset, in `symbol`.
@@ -119,8 +126,8 @@ struct Switch {
 };
 
 enum class Kind : uint8_t {
-  kUint,    ///< width_bytes 1, 2 or 4.
-  kSint,    ///< width_bytes 1, 2 or 4.
+  kUint,    ///< width_bytes 1, 2 or 4; 8 only in specs that are read at run time.
+  kSint,    ///< The same.
   kFloat,   ///< IEEE 754 binary32.
   kBits,    ///< bit_width bits of a number of width_bytes bytes, 1 to 4.
   kMask,    ///< width_bytes 1 or 2, with a MaskTable.
@@ -179,6 +186,10 @@ struct Field {
   uint8_t bit_shift = 0;                ///< kBits: number of the lowest bit within the number.
   Expr until = {nullptr, 0};            ///< Repeat::kUntil: over the element, from its begin on.
   const Argument* arguments = nullptr;  ///< kStruct: one for each parameter of `type`.
+
+  /// Returns whether its values have 64 bits and no sign. Where numbers are kept as int64 they have
+  /// the same bits: those from 2^63 on are negative there.
+  constexpr bool is_wide() const { return kind == Kind::kUint && width_bytes == 8; }
 
   /// Returns how many of its bytes the field before it has too: 1 for bits that begin within one.
   constexpr uint8_t shared_bytes() const {

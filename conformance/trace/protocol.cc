@@ -85,6 +85,15 @@ class AppReader {
     } catch (const std::invalid_argument& mistake) {
       fail(node, mistake.what());
     }
+    for (int i = 0; i < out_.wire->type_count; ++i) {
+      const reflect::Type& type = *out_.wire->types[i];
+      const auto* const end = type.fields + type.field_count;
+      const auto* const wide = std::find_if(
+          type.fields, end, [](const reflect::Field& field) { return field.is_wide(); });
+      if (wide == end) continue;
+      fail(node, std::string(type.id) + '.' + wide->name +
+                     " has 64 bits; traces hold numbers below 2^63, so 's8' or 'size: 8'");
+    }
   }
 
   // Here alone, as the compiler makes a map[] of its own for each length of a written key.

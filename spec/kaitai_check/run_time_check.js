@@ -1,5 +1,5 @@
 // Compares `rubric decode --spec FILE` with Kaitai Struct's own parser for specs that are read at
-// run time: those that ship, and the three here. Frames are what `rubric generate` makes of each
+// run time: those that ship, and the four here. Frames are what `rubric generate` makes of each
 // structure, and mutations of them.
 // Usage: node run_time_check.js PATH_TO_RUBRIC [FRAMES_PER_STRUCTURE] [SEED]
 'use strict';
@@ -77,7 +77,7 @@ async function main() {
   const [rubric, count = '60', seed = '1'] = process.argv.slice(2);
   const random = seeded(Number(seed));
   const shipped = fs.readdirSync(path.join(__dirname, '..', 'wire', 'run_time'));
-  const plain = ['plain', 'lists', 'computed'];
+  const plain = ['plain', 'lists', 'computed', 'wide'];
   let frames = 0, accepted = 0, failed = 0;
   for (const name of [...shipped.map((file) => path.basename(file, '.ksy')).sort(), ...plain]) {
     const {parser, Stream, spec} = await load(name);

@@ -39,7 +39,7 @@ struct Difference {
 std::string hex(Bytes bytes) { return fmt::format("\"{:02x}\"", fmt::join(bytes, "")); }
 
 std::string plain_number(const Field& field, std::int64_t value) {
-  if (field.kind != Kind::kFloat) return std::to_string(value);
+  if (field.kind != Kind::kFloat) return reflect::integer_text(field, value);
   return std::to_string(float_of_bits(static_cast<std::uint32_t>(value)));
 }
 

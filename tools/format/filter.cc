@@ -38,10 +38,19 @@ bool is_hex_of(std::string_view text, Bytes bytes) {
   return true;
 }
 
+/// Whether a whole number is above INT64_MAX, and its bits: in this order pairs compare as the
+/// numbers do.
+using Whole = std::pair<bool, std::int64_t>;
+Whole whole_of(const Value& value) {
+  return {value.integer < 0 && value.field && value.field->is_wide(), value.integer};
+}
+
 double number_of(const Value& value) {
   constexpr double kNanoseconds = 1e9;
   if (value.kind == ValueKind::kReal) return value.real;
-  const auto integer = static_cast<double>(value.integer);
+  const auto integer = whole_of(value).first
+                           ? static_cast<double>(static_cast<std::uint64_t>(value.integer))
+                           : static_cast<double>(value.integer);
   return value.kind == ValueKind::kTime ? integer / kNanoseconds : integer;
 }
 
@@ -50,13 +59,16 @@ bool is_number(const Value& value) {
          value.kind == ValueKind::kTime || value.kind == ValueKind::kBits;
 }
 
+bool is_whole(const Value& value) {
+  return value.kind == ValueKind::kInteger || value.kind == ValueKind::kBits;
+}
+
 bool is_float(const Value& value) { return value.kind == ValueKind::kReal && value.field; }
 
 bool compare_number(Compare op, const Value& value, const Operand& operand) {
   if (!is_number(value)) return false;
-  const bool exact = value.kind == ValueKind::kInteger || value.kind == ValueKind::kBits;
-  if (exact && operand.kind == Operand::Kind::kInteger) {
-    return compare(op, value.integer, operand.integer);
+  if (is_whole(value) && operand.kind == Operand::Kind::kInteger) {
+    return compare(op, whole_of(value), Whole{operand.wide, operand.integer});
   }
   // A field of binary32 is compared with the nearest binary32, so that 0.1 means what it prints.
   if (is_float(value)) {
@@ -157,7 +169,9 @@ bool Filter::compares_with_path(const Term& term, const Record& record) const {
       if (is_number(left) && is_number(right)) {
         Value value = left;
         if (term.masked) value.integer &= mask_of(term, value);
-        any_holds = compare(op, number_of(value), number_of(right));
+        any_holds = is_whole(value) && is_whole(right)
+                        ? compare(op, whole_of(value), whole_of(right))
+                        : compare(op, number_of(value), number_of(right));
       } else if (left.kind == ValueKind::kBytes && right.kind == ValueKind::kBytes) {
         any_holds = op == Compare::kEq && equal(left.bytes, right.bytes);
       } else if (left.kind == ValueKind::kText && right.kind == ValueKind::kText) {

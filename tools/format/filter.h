@@ -34,7 +34,8 @@ struct Operand {
   enum class Kind : std::uint8_t { kInteger, kReal, kText, kPath };
   Kind kind = Kind::kInteger;
   std::int64_t integer = 0;
-  double real = 0;  ///< Also of kInteger.
+  bool wide = false;  ///< kInteger: `integer` has the bits of a number above INT64_MAX.
+  double real = 0;    ///< Also of kInteger.
   std::string text;
   std::size_t path = 0;  ///< kPath: index into the filter's paths.
 };

@@ -118,14 +118,22 @@ Compare mirrored(Compare op) {
   }
 }
 
-std::int64_t read_hex(const Token& token) {
+std::uint64_t read_hex(const Token& token) {
   std::uint64_t value = 0;
   const char* end = token.text.data() + token.text.size();
   const auto [stop, error] = std::from_chars(token.text.data() + 2, end, value, 16);
-  if (error != std::errc{} || stop != end || value > INT64_MAX) {
+  if (error != std::errc{} || stop != end) {
     throw FilterError(fmt::format("'{}' is not a number", token.text), token.position);
   }
-  return static_cast<std::int64_t>(value);
+  return value;
+}
+
+Operand of_unsigned(std::uint64_t value) {
+  Operand operand;
+  operand.integer = static_cast<std::int64_t>(value);
+  operand.wide = operand.integer < 0;
+  operand.real = static_cast<double>(value);
+  return operand;
 }
 
 Operand read_number(const Token& token) {
@@ -133,10 +141,11 @@ Operand read_number(const Token& token) {
   const char* begin = token.text.data();
   const char* end = begin + token.text.size();
   if (token.text.starts_with("0x") || token.text.starts_with("0X")) {
-    operand.integer = read_hex(token);
-    operand.real = static_cast<double>(operand.integer);
-    return operand;
+    return of_unsigned(read_hex(token));
   }
+  std::uint64_t unsigned_value = 0;
+  const auto natural = std::from_chars(begin, end, unsigned_value);
+  if (natural.ec == std::errc{} && natural.ptr == end) return of_unsigned(unsigned_value);
   const auto whole = std::from_chars(begin, end, operand.integer);
   if (whole.ec == std::errc{} && whole.ptr == end) {
     operand.real = static_cast<double>(operand.integer);

@@ -48,7 +48,7 @@ char* put_quoted_hex(char* at, Bytes bytes) {
 
 char* put_raw(char* at, const Field& field, std::int64_t value) {
   if (field.kind == Kind::kFloat) return put_float(at, static_cast<std::uint32_t>(value));
-  return put_int(at, value);
+  return put_integer(at, field, value);
 }
 
 }  // namespace
@@ -58,9 +58,9 @@ bool is_text(const Field* field) {
 }
 
 double converted(const Field& field, std::int64_t raw) {
-  const double number = field.kind == Kind::kFloat
-                            ? static_cast<double>(float_of_bits(static_cast<std::uint32_t>(raw)))
-                            : static_cast<double>(raw);
+  double number = static_cast<double>(raw);
+  if (field.kind == Kind::kFloat) number = float_of_bits(static_cast<std::uint32_t>(raw));
+  if (field.is_wide()) number = static_cast<double>(static_cast<std::uint64_t>(raw));
   const double value = number * field.unit->scale + field.unit->offset;
   // 6340 * 0.01 - 40 is 23.4, not 23.400000000000006.
   constexpr double kSteps = 1e9;
@@ -128,7 +128,8 @@ char* JsonNodes::members(char* at, const Decoded& decoded, std::size_t from,
 char* JsonNodes::number(char* at, const FieldPlan& plan, std::int64_t value) const {
   if (plan.plain) return put_int(put(at, plan.key), value);
   // An enum with all names: number and name are one ready-made piece.
-  const auto slot = static_cast<std::uint64_t>(value - plan.first_value);
+  const std::uint64_t slot =
+      static_cast<std::uint64_t>(value) - static_cast<std::uint64_t>(plan.first_value);
   if (slot < plan.members.size() && plan.members[slot].size) return put(at, plan.members[slot]);
   if (plan.enumerated) return put(put_int(put(at, plan.key), value), plan.nameless);
   return number_beside(at, plan, value);
@@ -259,11 +260,11 @@ void JsonPlan::add(const Field& field) {
   }
   if (field.enumeration) {
     chars += plan.name_key.size() + longest_name(*field.enumeration) + 2;
-    if (!unit) plan_enum(*field.enumeration, plan);
+    if (!unit && !field.is_wide()) plan_enum(*field.enumeration, plan);
   }
   if (field.mask) chars += plan.bits_key.size() + plan_mask(*field.mask, plan) + 2;
-  plan.plain =
-      !unit && !field.enumeration && !field.mask && field.kind != Kind::kFloat && plan.key.size > 0;
+  plan.plain = !unit && !field.enumeration && !field.mask && field.kind != Kind::kFloat &&
+               !field.is_wide() && plan.key.size > 0;
   max_member_chars_ = std::max(max_member_chars_, chars + 2 * kPieceRoom);
 }
 

@@ -12,6 +12,7 @@
 #include "codec/reflect/decode.h"
 #include "codec/reflect/schema.h"
 #include "codec/runtime/bytes.h"
+#include "tools/format/put.h"
 
 namespace rubric::format {
 
@@ -84,6 +85,11 @@ class JsonPlan {
   std::uintptr_t first_address_ = 0;
   std::size_t max_member_chars_ = 0;
 };
+
+/// Writes an integer of the field.
+inline char* put_integer(char* at, const reflect::Field& field, std::int64_t value) {
+  return field.is_wide() ? put_uint(at, static_cast<std::uint64_t>(value)) : put_int(at, value);
+}
 
 /// Returns whether the field's bytes are shown as characters.
 bool is_text(const reflect::Field* field);

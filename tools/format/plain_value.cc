@@ -51,9 +51,12 @@ void append_plain_value(const Value& value, const Record& record, const JsonNode
                         Buffer& out) {
   switch (value.kind) {
     case Value::Kind::kAbsent: break;
-    case Value::Kind::kInteger:
-      out.commit(put_int(out.reserve(kMaxIntChars), value.integer));
+    case Value::Kind::kInteger: {
+      char* const at = out.reserve(kMaxIntChars);
+      out.commit(value.field ? put_integer(at, *value.field, value.integer)
+                             : put_int(at, value.integer));
       break;
+    }
     case Value::Kind::kReal: append_real(value.real, value.field != nullptr, out); break;
     case Value::Kind::kTime: out.commit(put_time(out.reserve(kMaxTimeChars), value.integer)); break;
     case Value::Kind::kText: out.append(text::harmless(value.text)); break;

@@ -285,7 +285,7 @@ class FieldPrinter {
     } else if (field.kind == Kind::kFloat) {
       out_.append(fmt::format("{}", float_of_bits(static_cast<std::uint32_t>(value))));
     } else {
-      out_.commit(put_int(out_.reserve(kMaxIntChars), value));
+      out_.commit(put_integer(out_.reserve(kMaxIntChars), field, value));
     }
   }
 

@@ -11,11 +11,12 @@ import json
 import os
 import pty
 import re
+import struct
 import subprocess
 import tempfile
 import unittest
 
-from testing import FIRMWARE, RUBRIC, ProgramTest, on_terminal, run
+from testing import FIRMWARE, RUBRIC, ProgramTest, on_terminal, rubric, run
 
 JOIN = FIRMWARE / "a_join_data.pcapng"
 SERIAL = FIRMWARE / "a_join_data.serial.bin"
@@ -349,6 +350,50 @@ class Terminals(unittest.TestCase):
             process.stdin.flush()
             self.assertIn(b"serial_joined", process.stdout.readline())
             process.stdin.close()
+
+
+class WideNumbers(unittest.TestCase):
+    ARGS = ("--spec", "spec/kaitai_check/wide.ksy", "--as", "wide")
+    FIELDS = {"big": 2**64 - 1, "little": 2**63, "below": -2**63, "kind": 2**53 + 1,
+              "kind_name": None, "count": 0, "counted": [], "tail": [2**64 - 2, 7]}
+    RAW = (struct.pack(">Q", 2**64 - 1) + struct.pack("<Q", 2**63) +
+           struct.pack(">qQB2Q", -2**63, 2**53 + 1, 0, 2**64 - 2, 7)).hex()
+
+    def test_they_are_whole_wherever_they_are_shown(self):
+        def shown(command, *more, stdin=self.RAW):
+            return rubric(command, *self.ARGS, *more, stdin=stdin)[1]
+        self.assertEqual(json.loads(shown("decode", "--format", "jsonl"))["fields"], self.FIELDS)
+        text = "big=18446744073709551615 little=9223372036854775808 below=-9223372036854775808"
+        self.assertIn(f"{text} kind=9007199254740993 ", shown("decode", "--width", "300"))
+        self.assertIn(" 18446744073709551615\n", shown("explain", self.RAW))
+        self.assertEqual(shown("decode", "--format", "csv", "--fields", "big,tail").split()[1:],
+                         ["18446744073709551615,18446744073709551614", "7"])
+        wrong = self.RAW[:64] + "cc" + 16 * "f"  # `few` is there where `count` is above 200.
+        self.assertIn("few is 18446744073709551615, allowed are 0 to 1000",
+                      shown("decode", stdin=wrong))
+
+    def test_filters_compare_them_exactly(self):
+        for holds, words in ((True, (
+            "big==18446744073709551615", "big==0xffffffffffffffff", "big>9223372036854775807",
+            "big>little", "big>kind", "below<big", "below<0", "big>-1", "little!=below",
+            "little==9223372036854775808", "tail==18446744073709551614",
+            "big & 0x8000000000000000", "big>1e19")), (False, (
+                "big==-1", "big<0", "big<=below", "kind==9007199254740992", "little==below",
+                "kind==9007199254740994", "little>9223372036854775808",
+                "count>9223372036854775808"))):
+            for word in words:
+                out = rubric("decode", *self.ARGS, "--filter", word, stdin=self.RAW)[1]
+                self.assertEqual(bool(out), holds, word)
+
+    def test_what_does_not_fit_is_not_written(self):
+        line = json.dumps(self.FIELDS)
+        _, out, err = rubric("encode", *self.ARGS, "--carrier", "none", "--format", "hex",
+                             stdin=line)
+        self.assertEqual(out.replace(" ", "").strip().lower(), self.RAW, err)
+        for value in ("-1", str(2**64), "1.5", "-0"):
+            _, out, err = rubric("encode", *self.ARGS, "--carrier", "none",
+                                 stdin=line.replace(str(2**64 - 1), value, 1))
+            self.assertIn(f"big: expected a number from 0 to {2**64 - 1}, given {value}", err)
 
 
 if __name__ == "__main__":

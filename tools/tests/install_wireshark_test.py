@@ -317,7 +317,7 @@ class Install(Base):
     def test_what_varies_in_size(self):
         """Generated frames of plain Kaitai files: fields, faults and where notes are."""
         files = [(name, (KAITAI / f"{name}.ksy").read_text(encoding="utf-8"))
-                 for name in ("plain", "lists", "computed")]
+                 for name in ("plain", "lists", "computed", "wide")]
         for name, text in (*files, ("unproved", UNPROVED), ("floating", FLOATING)):
             text = re.sub("UTF-16LE|ISO-8859-15|windows-1252", "ASCII", text)
             spec = self.folder / f"{name}.ksy"

@@ -316,7 +316,7 @@ class File(Folder):
         self.assertEqual(line.stdout.split(), ["01", "00", "02"], line.stderr)
 
     def test_parameters_lists_and_other_encodings_are_written_as_they_are_read(self):
-        for name in ("lists", "computed"):
+        for name in ("lists", "computed", "wide"):
             args = ["--spec", f"spec/kaitai_check/{name}.ksy"]
             made = rubric("generate", *args, "--message", name, "--count", "60").stdout
             raw = "".join(json.loads(line)["raw"] + "\n" for line in made.splitlines())
@@ -488,6 +488,13 @@ class File(Folder):
         self.file("meta: {id: tinyos}\n", "tinyos.ksy")
         self.assertIn(f"{file}:15:11: error: unknown type 'tinyos::am_header'; there is none here",
                       rubric("decode", "--spec", file, stdin=BLINK).stderr)
+
+    def test_files_may_import_one_another(self):
+        for one, other in (("ay", "bee"), ("bee", "ay")):
+            file = self.file(f"meta: {{id: {one}, endian: be, imports: [{other}]}}\ntypes:\n"
+                             f"  {one}_part: {{seq: [{{id: a, type: u1}}]}}\n  whole: {{seq: "
+                             f"[{{id: b, type: '{other}::{other}_part'}}]}}\n", f"{one}.ksy")
+        self.assertIn("=3", rubric("decode", "--spec", file, "--as", "whole", stdin="03").stdout)
 
     def test_mistakes_are_shown_as_by_the_compiler(self):
         file = self.file(PLAIN.replace("u2", "u9"))

@@ -294,6 +294,11 @@ class Resolver {
                    "an unsigned number was expected");
       return open();
     }
+    if (step->width_bytes == 8) {
+      check_.error(expr.place, fmt::format("{} has 64 bits", quote(to_text(expr))),
+                   "expressions read numbers of at most 32");
+      return open();
+    }
     expr.field = step;
     expr.offset_bytes = offset;
     expr.range = step->range;

@@ -31,6 +31,10 @@ void check_plain(Check& check, const Field& field) {
     check.error(place_of(field.places, "repeat", field.place), "repeat: until",
                 "a count was expected, so that the size is known before; rubric --spec reads it");
   }
+  if (field.width_bytes == 8) {
+    check.error(place, fmt::format("a number of 8 bytes in {}", quote(field.id)),
+                "1, 2 or 4 bytes were expected; rubric --spec reads 8");
+  }
   if (field.bit_width > 0 && field.places.contains("contents")) {
     check.error(field.places.at("contents"), "contents of 3 bytes",
                 "1, 2 or 4 bytes were expected; rubric --spec reads 3");

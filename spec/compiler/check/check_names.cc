@@ -85,10 +85,9 @@ const Type* find_type(Check& check, const Spec& spec, const std::string& name,
   if (const Type* whole = import == nullptr ? nullptr : find_type(*import, id)) return whole;
   std::vector<std::string> known = ids_of(where->types);
   if (where == &spec) known.insert(known.end(), kNumberTypes.begin(), kNumberTypes.end());
-  const bool eight_bytes = id.size() >= 2 && id.find_first_of("usf") == 0 && id[1] == '8';
-  check.error(place, fmt::format("unknown type {}", quote(name)),
-              eight_bytes ? "at most 4 bytes are read as a number; 'size: 8' keeps them"
-                          : suggestion(id, known));
+  check.error(
+      place, fmt::format("unknown type {}", quote(name)),
+      id.starts_with("f8") ? "a float has 4 bytes; 'size: 8' keeps them" : suggestion(id, known));
   return nullptr;
 }
 

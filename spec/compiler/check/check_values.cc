@@ -1,5 +1,6 @@
 // Checks the values of a number: `valid`, -expect, and the range that they leave.
 #include <algorithm>
+#include <limits>
 
 #include "spec/compiler/check/check.h"
 #include "spec/compiler/check/intervals.h"
@@ -54,21 +55,30 @@ void resolve_set(Check& check, const Field& field, Valid& valid, const Scope& sc
   }
 }
 
+/// Returns what a range without ends allows; of 8 bytes more than constants can say.
+Interval open_range(const Field& field, Interval range) {
+  if (field.width_bytes != 8) return range;
+  if (field.kind == ValueKind::kUint) return {0, -1};  // The bits of 2^64 - 1.
+  return {std::numeric_limits<std::int64_t>::min(), std::numeric_limits<std::int64_t>::max()};
+}
+
 void resolve_valid(Check& check, Field& field, const Scope& scope) {
   Valid& valid = *field.valid;
   const Interval range = field.range;
   resolve_bound(check, field, valid.min_expr, scope, range, valid.min, "the minimum");
   resolve_bound(check, field, valid.max_expr, scope, range, valid.max, "the maximum");
   if (valid.min_expr || valid.max_expr) {
-    if (!valid.min) valid.min = range.min;
-    if (!valid.max) valid.max = range.max;
-    if (*valid.min > *valid.max) {
+    const Interval left{valid.min.value_or(range.min), valid.max.value_or(range.max)};
+    if (left.min > left.max) {
       check.error(valid.place,
-                  fmt::format("the minimum {} is above the maximum {}", *valid.min, *valid.max),
+                  fmt::format("the minimum {} is above the maximum {}", left.min, left.max),
                   "no value would be valid");
       return;
     }
-    field.range = {*valid.min, *valid.max};
+    field.range = left;
+    const Interval open = open_range(field, range);
+    if (!valid.min) valid.min = open.min;
+    if (!valid.max) valid.max = open.max;
   }
   resolve_set(check, field, valid, scope, range);
   if (!valid.one_of.empty()) field.range = {valid.one_of.front(), valid.one_of.back()};

@@ -90,7 +90,8 @@ std::int64_t floor_mod(std::int64_t a, std::int64_t b) {
 }
 
 Interval width_range(int width_bytes, bool is_signed) {
-  const std::int64_t span = std::int64_t{1} << (8 * width_bytes);
+  // Of 8 bytes those that a dissector's numbers, which are doubles, tell from all others.
+  const std::int64_t span = std::int64_t{1} << std::min(8 * width_bytes, 53);
   if (is_signed) return {-span / 2, span / 2 - 1};
   return {0, span - 1};
 }

@@ -58,7 +58,7 @@ class Loader {
     diagnostics_.add_source(file, text);
     auto spec = read_spec(file, text, diagnostics_, budget_);
     if (spec == nullptr || budget_ < 0) return nullptr;
-    open_.push_back(file);
+    open_.push_back(spec.get());
     for (std::size_t i = 0; i < spec->import_names.size(); ++i) {
       import(*spec, spec->import_names[i], spec->import_places[i]);
     }
@@ -86,9 +86,12 @@ class Loader {
       diagnostics_.error(place, fmt::format("{} is imported twice", quote(name)));
       return;
     }
-    if (std::find(open_.begin(), open_.end(), file) != open_.end()) {
-      diagnostics_.error(place, fmt::format("{} imports itself in a circle", quote(name)),
-                         "imports must end");
+    const auto around = std::find_if(open_.begin(), open_.end(),
+                                     [&](const Spec* one) { return one->file == file; });
+    if (around != open_.end()) {
+      diagnostics_.error_in_code(place, fmt::format("{} imports itself in a circle", quote(name)),
+                                 "imports must end");
+      spec.imports.push_back(*around);
       return;
     }
     if (!text) {
@@ -112,7 +115,7 @@ class Loader {
   Diagnostics& diagnostics_;
   const Library& library_;
   int budget_ = kNodeBudget;
-  std::vector<std::string> open_;
+  std::vector<const Spec*> open_;  // Those whose imports are being read.
 };
 
 }  // namespace

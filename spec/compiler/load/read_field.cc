@@ -29,7 +29,7 @@ bool set_number(const YamlInput& input, const YAML::Node& node, std::string_view
   std::string_view base = word.substr(0, 2);
   const std::string_view suffix = word.size() > 2 ? word.substr(2) : std::string_view{};
   if (base.size() != 2 || std::string_view("usf").find(base[0]) == base.npos) return false;
-  if (base[1] != '1' && base[1] != '2' && base[1] != '4') return false;
+  if (std::string_view("1248").find(base[1]) == base.npos) return false;
   if (base[0] == 'f' && base[1] != '4') return false;
   if (!suffix.empty() && suffix != "be" && suffix != "le") return false;
   field.kind = base[0] == 'u' ? ValueKind::kUint : ValueKind::kSint;

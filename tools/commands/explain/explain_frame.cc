@@ -51,7 +51,7 @@ std::string value_text(const Field& field, std::int64_t value) {
     return fmt::format("{}", float_of_bits(static_cast<std::uint32_t>(value)));
   }
   if (field.kind == Kind::kMask) return fmt::format("{:#x}", value);
-  return std::to_string(value);
+  return reflect::integer_text(field, value);
 }
 
 std::string meaning(const Field& field, std::int64_t value) {

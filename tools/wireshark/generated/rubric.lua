@@ -526,7 +526,7 @@ function Window:u8(offset)
 end
 
 local function number_at(bytes, at, width, little)
-  local value = 0
+  local value = width == 8 and 0.0 or 0  -- Where integers have 64 bits, no sum of them would do.
   for i = 1, width do
     local byte = bytes:byte(at + (little and width + 1 - i or i))
     value = value * 256 + byte
@@ -565,6 +565,15 @@ local function load_number(field, bytes, at)
   return value
 end
 
+-- An integer of a field in digits. Those of 8 bytes are rounded where they are kept as values.
+local function integer_text(field, value, bytes, at)
+  if field.width ~= 8 then return string.format("%d", value) end
+  local low, high = field.little and at or at + 4, field.little and at + 4 or at
+  local number = field.kind == "sint" and Int64 or UInt64
+  return tostring(number.new(number_at(bytes, low, 4, field.little),
+                             number_at(bytes, high, 4, field.little)))
+end
+
 -- One decoding. Nodes are tables: field, type, kind, offset, size, value; children from 1 on.
 local Decoder = {}
 Decoder.__index = Decoder
@@ -594,7 +603,9 @@ local function add(parent, kind, field, offset, size)
 end
 
 local function allowed_text(field)
-  if field.min then return ", allowed are " .. field.min .. " to " .. field.max end
+  if field.min then
+    return ", allowed are " .. (field.allowed or field.min .. " to " .. field.max)
+  end
   local values = {}
   for i, value in ipairs(field.one_of) do values[i] = string.format("%d", value) end
   return (#values == 1 and ", must be " or ", must be one of ") .. table.concat(values, ", ")
@@ -608,7 +619,8 @@ function Decoder:is_allowed(field, value, at)
       if one == value then return true end
     end
   end
-  local text = string.format("%s is %d%s", field.name, value, allowed_text(field))
+  local text = field.name .. " is " .. integer_text(field, value, self.bytes, at) ..
+      allowed_text(field)
   return self:fail(field.min and "out_of_range" or "unexpected", at, field, text)
 end
 
@@ -675,7 +687,8 @@ function Decoder:number(parent, field, at, limit)
   add(parent, "number", field, at, width).value = value
   if field.expect and value ~= field.expect then
     self:note("unexpected_value", at,
-              string.format("%s is %d, expected is %d", field.name, value, field.expect))
+              string.format("%s is %s, expected is %d", field.name,
+                            integer_text(field, value, self.bytes, at), field.expect))
   end
   return true, at + width
 end
@@ -1018,8 +1031,8 @@ local function define(abbreviation, make)
 end
 
 local NUMBERS = {
-  uint = {ProtoField.uint8, ProtoField.uint16, nil, ProtoField.uint32},
-  sint = {ProtoField.int8, ProtoField.int16, nil, ProtoField.int32},
+  uint = {ProtoField.uint8, ProtoField.uint16, [4] = ProtoField.uint32, [8] = ProtoField.uint64},
+  sint = {ProtoField.int8, ProtoField.int16, [4] = ProtoField.int32, [8] = ProtoField.int64},
   mask = {ProtoField.uint8, ProtoField.uint16},
 }
 
@@ -1174,7 +1187,7 @@ local function add_number(tree, abbreviation, field, node, view)
   local item = field.bits and tree:add(fields[abbreviation], range, node.value) or
       add_to(tree, fields[abbreviation], range)
   if field.enum and not enums[field.enum][node.value] then
-    item:set_text(string.format("%s: %d", field.name, node.value))
+    item:set_text(field.name .. ": " .. integer_text(field, node.value, range:raw(), 0))
   end
   if field.kind == "mask" then
     local bits = masks[field.mask]
@@ -1279,10 +1292,12 @@ local function float_text(bits)
   return sign .. string.format("%." .. math.max(0, digits - 1 - power) .. "f", tonumber(short))
 end
 
-local function number_text(field, value)
+function Decoder:number_text(node)
+  local field, value = node.field, node.value
   if field.kind == "mask" then return mask_text(field, value) end
   if field.kind == "float" then return float_text(value) end
-  return field.enum and enums[field.enum][value] or string.format("%d", value)
+  return field.enum and enums[field.enum][value] or
+      integer_text(field, value, self.bytes, node.offset)
 end
 
 local function is_pair(node)
@@ -1291,14 +1306,13 @@ end
 
 local function structure_text(out, node)
   if is_pair(node) then
-    return number_text(node[1].field, node[1].value) .. ":" ..
-        number_text(node[2].field, node[2].value)
+    return out:number_text(node[1]) .. ":" .. out:number_text(node[2])
   end
   return "{" .. out:fields_text(node) .. "}"
 end
 
 function Decoder:value_text(node)
-  if node.kind == "number" then return number_text(node.field, node.value) end
+  if node.kind == "number" then return self:number_text(node) end
   if node.kind == "bytes" then
     local bytes = self.bytes:sub(node.offset + 1, node.offset + node.size)
     return node.field.text and quoted_text(node.field, bytes) or hex_text(bytes)
@@ -1310,8 +1324,7 @@ function Decoder:value_text(node)
       parts[i] = ".." .. #node .. " in all"
       break
     end
-    parts[i] = node.kind == "numbers" and number_text(node.field, child.value) or
-        structure_text(self, child)
+    parts[i] = node.kind == "numbers" and self:number_text(child) or structure_text(self, child)
   end
   return "[" .. table.concat(parts, " ") .. "]"
 end

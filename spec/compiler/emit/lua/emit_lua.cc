@@ -166,6 +166,22 @@ void add_choice(const Switch& choice, Entry& entry) {
   }
 }
 
+void add_range(const Field& field, Entry& entry) {
+  const std::string min = std::to_string(*field.valid->min);
+  std::string max = std::to_string(*field.valid->max);
+  if (field.width_bytes != 8) {
+    entry.add("min", min);
+    entry.add("max", max);
+    return;
+  }
+  if (field.kind == ValueKind::kUint) {
+    max = std::to_string(static_cast<std::uint64_t>(*field.valid->max));
+  }
+  entry.add("min", min + ".0");  // Doubles, as the values are, which shows them rounded.
+  entry.add("max", max + ".0");
+  entry.add_text("allowed", min + " to " + max);
+}
+
 std::string field_text(const Field& field) {
   Entry entry;
   entry.add_text("name", field.name);
@@ -178,8 +194,7 @@ std::string field_text(const Field& field) {
   if (field.width_bytes != 0) entry.add("width", std::to_string(field.width_bytes));
   if (field.little_endian && field.width_bytes > 1) entry.add("little", "true");
   if (field.valid && field.valid->one_of.empty()) {
-    entry.add("min", std::to_string(*field.valid->min));
-    entry.add("max", std::to_string(*field.valid->max));
+    add_range(field, entry);
   } else if (field.valid) {
     entry.add("one_of", number_list(field.valid->one_of));
   }

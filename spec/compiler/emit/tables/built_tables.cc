@@ -79,21 +79,26 @@ class BuiltTables::Builder {
  public:
   explicit Builder(BuiltTables& tables) : kept_(tables.kept_), fields_(&tables.fields_) {}
 
+  /// Makes what types refer to, also those of specs that are built before.
+  void begin(const Spec& spec) {
+    for (const auto& one : spec.enums) enumeration(*one);
+    for (const auto& one : spec.types) {
+      if (one->is_mask) masks_[one.get()] = mask(*one);
+    }
+  }
+
   BuiltSpec build(const Spec& spec) {
     std::vector<const reflect::EnumTable*> enums;
     std::vector<const reflect::MaskTable*> masks;
     std::vector<const reflect::Type*> types;
     std::vector<reflect::Carrier> carriers;
-    for (const auto& one : spec.enums) enums.push_back(enumeration(*one));
+    for (const auto& one : spec.enums) enums.push_back(enums_.at(one.get()));
     for (const auto& one : spec.types) {
-      if (one->is_mask) masks.push_back(masks_[one.get()] = mask(*one));
-    }
-    for (const Type* one : spec.dependency_order) {
-      if (!one->is_mask) types_[one] = type(*one);
-    }
-    for (const auto& one : spec.types) {
-      if (one->is_mask) continue;
-      types.push_back(types_.at(one.get()));
+      if (one->is_mask) {
+        masks.push_back(masks_.at(one.get()));
+        continue;
+      }
+      types.push_back(type_of(one.get()));
       if (!one->carrier.empty()) carriers.push_back({text(one->carrier), types.back()});
     }
     const reflect::Protocol protocol{text(spec.id),  text(spec.title), list(types), count(types),
@@ -138,12 +143,12 @@ class BuiltTables::Builder {
     return static_cast<std::uint8_t>(values.size());
   }
 
-  const reflect::EnumTable* enumeration(const Enum& one) {
+  void enumeration(const Enum& one) {
     std::vector<reflect::EnumEntry> entries;
     for (const EnumEntry& entry : one.entries) {
       entries.push_back({static_cast<std::uint32_t>(entry.value), text(entry.name)});
     }
-    return enums_[&one] = single<reflect::EnumTable>({text(one.id), list(entries), count(entries)});
+    enums_[&one] = single<reflect::EnumTable>({text(one.id), list(entries), count(entries)});
   }
 
   const reflect::MaskTable* mask(const Type& one) {
@@ -171,8 +176,10 @@ class BuiltTables::Builder {
     return {reflect::ValidKind::kOneOf, 0, 0, list(rule.one_of), few(rule.one_of)};
   }
 
-  const reflect::Type* type_of(const Type* one) const {
-    return one == nullptr ? nullptr : types_.at(one);
+  const reflect::Type* type_of(const Type* one) {
+    if (one == nullptr) return nullptr;
+    const auto found = types_.find(one);
+    return found != types_.end() ? found->second : types_[one] = type(*one);
   }
 
   const reflect::Switch* choice(const Field& field) {
@@ -298,6 +305,7 @@ class BuiltTables::Builder {
 
 BuiltTables::BuiltTables(const Model& model) {
   Builder builder(*this);
+  for (const auto& spec : model.specs) builder.begin(*spec);
   for (const auto& spec : model.specs) specs_[spec->id] = builder.build(*spec);
 }
 

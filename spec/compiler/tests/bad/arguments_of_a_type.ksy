@@ -1,5 +1,5 @@
 # expect: 11:15: arguments for type 'two': 1; as many as its parameters were expected: 0
-# expect: 13:15: unknown type 'u8'; at most 4 bytes are read as a number; 'size: 8' keeps them
+# expect: 13:15: unknown type 'f8'; a float has 4 bytes; 'size: 8' keeps them
 meta:
   id: bad
   endian: be
@@ -10,7 +10,7 @@ types:
       - id: a
         type: two(1)
       - id: b
-        type: u8
+        type: f8
   two:
     -requirement: WIRE-DATA
     seq:

@@ -1,5 +1,5 @@
 # expect: 11:15: unknown type 'onee'; did you mean 'one'?
-# expect: 13:15: unknown type 'u8'; at most 4 bytes are read as a number; 'size: 8' keeps them
+# expect: 13:15: unknown type 'f8'; a float has 4 bytes; 'size: 8' keeps them
 meta:
   id: bad
   endian: be
@@ -10,4 +10,4 @@ types:
       - id: a
         type: onee
       - id: b
-        type: u8
+        type: f8

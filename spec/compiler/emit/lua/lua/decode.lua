@@ -52,7 +52,7 @@ function Window:u8(offset)
 end
 
 local function number_at(bytes, at, width, little)
-  local value = 0
+  local value = width == 8 and 0.0 or 0  -- Where integers have 64 bits, no sum of them would do.
   for i = 1, width do
     local byte = bytes:byte(at + (little and width + 1 - i or i))
     value = value * 256 + byte
@@ -91,6 +91,15 @@ local function load_number(field, bytes, at)
   return value
 end
 
+-- An integer of a field in digits. Those of 8 bytes are rounded where they are kept as values.
+local function integer_text(field, value, bytes, at)
+  if field.width ~= 8 then return string.format("%d", value) end
+  local low, high = field.little and at or at + 4, field.little and at + 4 or at
+  local number = field.kind == "sint" and Int64 or UInt64
+  return tostring(number.new(number_at(bytes, low, 4, field.little),
+                             number_at(bytes, high, 4, field.little)))
+end
+
 -- One decoding. Nodes are tables: field, type, kind, offset, size, value; children from 1 on.
 local Decoder = {}
 Decoder.__index = Decoder
@@ -120,7 +129,9 @@ local function add(parent, kind, field, offset, size)
 end
 
 local function allowed_text(field)
-  if field.min then return ", allowed are " .. field.min .. " to " .. field.max end
+  if field.min then
+    return ", allowed are " .. (field.allowed or field.min .. " to " .. field.max)
+  end
   local values = {}
   for i, value in ipairs(field.one_of) do values[i] = string.format("%d", value) end
   return (#values == 1 and ", must be " or ", must be one of ") .. table.concat(values, ", ")
@@ -134,7 +145,8 @@ function Decoder:is_allowed(field, value, at)
       if one == value then return true end
     end
   end
-  local text = string.format("%s is %d%s", field.name, value, allowed_text(field))
+  local text = field.name .. " is " .. integer_text(field, value, self.bytes, at) ..
+      allowed_text(field)
   return self:fail(field.min and "out_of_range" or "unexpected", at, field, text)
 end
 
@@ -201,7 +213,8 @@ function Decoder:number(parent, field, at, limit)
   add(parent, "number", field, at, width).value = value
   if field.expect and value ~= field.expect then
     self:note("unexpected_value", at,
-              string.format("%s is %d, expected is %d", field.name, value, field.expect))
+              string.format("%s is %s, expected is %d", field.name,
+                            integer_text(field, value, self.bytes, at), field.expect))
   end
   return true, at + width
 end

@@ -29,8 +29,8 @@ local function define(abbreviation, make)
 end
 
 local NUMBERS = {
-  uint = {ProtoField.uint8, ProtoField.uint16, nil, ProtoField.uint32},
-  sint = {ProtoField.int8, ProtoField.int16, nil, ProtoField.int32},
+  uint = {ProtoField.uint8, ProtoField.uint16, [4] = ProtoField.uint32, [8] = ProtoField.uint64},
+  sint = {ProtoField.int8, ProtoField.int16, [4] = ProtoField.int32, [8] = ProtoField.int64},
   mask = {ProtoField.uint8, ProtoField.uint16},
 }
 
@@ -185,7 +185,7 @@ local function add_number(tree, abbreviation, field, node, view)
   local item = field.bits and tree:add(fields[abbreviation], range, node.value) or
       add_to(tree, fields[abbreviation], range)
   if field.enum and not enums[field.enum][node.value] then
-    item:set_text(string.format("%s: %d", field.name, node.value))
+    item:set_text(field.name .. ": " .. integer_text(field, node.value, range:raw(), 0))
   end
   if field.kind == "mask" then
     local bits = masks[field.mask]
@@ -290,10 +290,12 @@ local function float_text(bits)
   return sign .. string.format("%." .. math.max(0, digits - 1 - power) .. "f", tonumber(short))
 end
 
-local function number_text(field, value)
+function Decoder:number_text(node)
+  local field, value = node.field, node.value
   if field.kind == "mask" then return mask_text(field, value) end
   if field.kind == "float" then return float_text(value) end
-  return field.enum and enums[field.enum][value] or string.format("%d", value)
+  return field.enum and enums[field.enum][value] or
+      integer_text(field, value, self.bytes, node.offset)
 end
 
 local function is_pair(node)
@@ -302,14 +304,13 @@ end
 
 local function structure_text(out, node)
   if is_pair(node) then
-    return number_text(node[1].field, node[1].value) .. ":" ..
-        number_text(node[2].field, node[2].value)
+    return out:number_text(node[1]) .. ":" .. out:number_text(node[2])
   end
   return "{" .. out:fields_text(node) .. "}"
 end
 
 function Decoder:value_text(node)
-  if node.kind == "number" then return number_text(node.field, node.value) end
+  if node.kind == "number" then return self:number_text(node) end
   if node.kind == "bytes" then
     local bytes = self.bytes:sub(node.offset + 1, node.offset + node.size)
     return node.field.text and quoted_text(node.field, bytes) or hex_text(bytes)
@@ -321,8 +322,7 @@ function Decoder:value_text(node)
       parts[i] = ".." .. #node .. " in all"
       break
     end
-    parts[i] = node.kind == "numbers" and number_text(node.field, child.value) or
-        structure_text(self, child)
+    parts[i] = node.kind == "numbers" and self:number_text(child) or structure_text(self, child)
   end
   return "[" .. table.concat(parts, " ") .. "]"
 end
