@@ -118,14 +118,10 @@ def alone(words):
 def each(folder, group):
     """What is wrong with a run of --each; empty: nothing."""
     command = ("decode", "check")[group % 2]
-    how = []
-    if KIND in ("bin", "sf") and group % 10 > 1:
-        # A broken stream has each process look for another protocol, ten times as long.
-        command, how = "decode", ["--spec", "none"]
     files = f"{folder}/{group:03}*"
     # All of a run are ended with it.
     words = ["timeout", "--signal=KILL", str(PATIENCE_S + GROUP), RUBRIC, command, "--each", files,
-             "--jobs", "1", *how]
+             "--jobs", "1"]
     done = subprocess.run(words, stdin=subprocess.DEVNULL, capture_output=True, check=False,
                           env=ENVIRONMENT)
     lines = [json.loads(line) for line in done.stdout.splitlines()]

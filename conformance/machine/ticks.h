@@ -15,9 +15,11 @@ inline constexpr Micros kUsPerSecond = 1'000'000;
 inline constexpr Micros kTicksPerSecond = 1024;
 
 /// Returns the tick that has begun at `time`, counted in units of which `per_second` make a second.
-/// `time` may be 0 to 2^53.
+/// Of times whose ticks do not fit, the lower bits.
 constexpr Ticks ticks_of(std::int64_t time, std::int64_t per_second = kUsPerSecond) {
-  return static_cast<Ticks>(time * kTicksPerSecond / per_second);
+  // Whole seconds by themselves: captures have times of which 1024 times as many overflow.
+  return static_cast<Ticks>(time / per_second * kTicksPerSecond +
+                            time % per_second * kTicksPerSecond / per_second);
 }
 
 /// Returns the fewest ticks that last at least `us` microseconds.

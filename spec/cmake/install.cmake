@@ -162,6 +162,9 @@ License: Apache-2.0
 endforeach()
 
 set(CPACK_PROJECT_CONFIG_FILE ${PROJECT_SOURCE_DIR}/spec/cmake/package_tools.cmake)
+foreach(program rubric rubricc rubric-extcap)
+  list(APPEND CPACK_RUBRIC_PROGRAMS ${PROJECT_BINARY_DIR}/${program})
+endforeach()
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME rubric)
 set(CPACK_PACKAGE_CONTACT "Rubric maintainers <maintainers@rubric.invalid>")
@@ -178,7 +181,6 @@ Communication Layer, and tests implementations against a reference machine.")
 set(CPACK_COMPONENT_DEV_DESCRIPTION
   "The codec and the node (headers only), and the conformance library.")
 set(CPACK_STRIP_FILES ON)
-set(CPACK_DEBIAN_TOOL_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_TOOL_PACKAGE_SECTION net)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libfmt-dev, libyaml-cpp-dev, nlohmann-json3-dev")

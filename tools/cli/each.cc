@@ -36,7 +36,8 @@ constexpr int kGraver[] = {kExitClean, kExitIncomplete, kExitFindings, kExitInpu
                            kExitUsage, kExitOutput,     kExitBroken};
 
 constexpr std::string_view kLineBegin = R"({"schema":"rubric.each/1",)";
-constexpr std::size_t kAheadMax = 4096;  // Results that wait for an earlier one.
+constexpr std::size_t kAheadMax = 4096;    // Results that wait for an earlier one.
+constexpr std::size_t kRunsThatShare = 8;  // To read all specs takes as long as some runs.
 // What is taken of a folder.
 constexpr std::string_view kExtensions[] = {".pcap",     ".pcapng", ".bin", ".sf",
                                             ".sfstream", ".hex",    ".rtr"};
@@ -290,6 +291,7 @@ class Runs {
   };
 
   void start(std::size_t i, const std::string& key, const EachRun& run) {
+    if (!std::exchange(prepared_, true) && runs_.size() >= kRunsThatShare) job_.prepare();
     Child child{i, key, memory_file(), memory_file()};
     output_.flush();  // Else both processes would write what waits.
     std::fflush(nullptr);
@@ -393,6 +395,7 @@ class Runs {
   std::map<int, std::size_t> counts_;  // By exit code.
   std::size_t known_ = 0;
   bool good_ = true;
+  bool prepared_ = false;
 };
 
 }  // namespace

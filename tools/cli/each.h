@@ -27,6 +27,8 @@ void check_each(const EachOptions& options);
 struct EachJob {
   const char* command = "";
   std::string settings;  ///< All that a result depends on besides the file.
+  /// Makes what runs share, before the first of many.
+  std::function<void()> prepare = [] {};
 };
 
 /// Does one run: puts what its line says into `members`, as members of a JSON object, and returns

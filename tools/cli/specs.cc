@@ -169,6 +169,10 @@ const reflect::Protocol& protocol_of(const std::string& spec) {
   }
 }
 
+void read_all_specs() {
+  for (const std::string& name : protocol_names()) protocol_of(name);
+}
+
 std::vector<std::string> specs_in(const std::string& spec) {
   struct stat status {};
   if (::stat(spec.c_str(), &status) == 0) return {spec};

@@ -19,6 +19,9 @@ const std::map<std::string, std::string_view, std::less<>>& shipped_specs();
 /// Returns the ids of the protocols that --spec takes by name, the built-in ones first.
 std::vector<std::string> protocol_names();
 
+/// Reads all of them now: processes that are forked after it have them.
+void read_all_specs();
+
 /// Returns the protocol that --spec names; of several, with commas between them, one that has the
 /// messages of all (reflect::CombinedProtocol). A name that ends in .ksy is a file, which is read
 /// now with its imports: its mistakes are printed as rubricc does, and end the subcommand. Throws

@@ -19,6 +19,7 @@
 #include "tools/cli/color.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/output.h"
+#include "tools/cli/specs.h"
 #include "tools/cli/terminal.h"
 #include "tools/cli/text_file.h"
 #include "tools/cli/verdict.h"
@@ -173,7 +174,7 @@ int check_each_run(const CheckOptions& options) {
   const check::Options judged = oracle_options(options);
   const report::KnownFailures expected = expectations(options);
   const std::string known = options.expect.empty() ? "" : cli::text_of_file(options.expect);
-  const cli::EachJob job{kCheckCommand, command_of(options) + "\n" + known};
+  const cli::EachJob job{kCheckCommand, command_of(options) + "\n" + known, cli::read_all_specs};
   keep_outputs_apart(options);
   if (!options.each.resume.empty()) cli::keep_apart("--out", options.out, {options.each.resume});
   return cli::each(options.each, job, options.input.files, options.out,

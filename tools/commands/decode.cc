@@ -304,7 +304,8 @@ int decode_each(const DecodeOptions& options) {
   const std::string settings = fmt::format(
       "{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}", in.format, in.fcs, fmt::join(in.links, " "), in.spec,
       in.as_message, options.filter, options.count, options.strict, cli::text_of_spec(in.spec));
-  const cli::EachJob job{"decode", settings};
+  cli::EachJob job{"decode", settings};
+  if (in.spec != "none") job.prepare = cli::read_all_specs;  // Without a spec none is looked for.
   return cli::each(options.each, job, in.files, "-",
                    [&](const std::string& file, std::string& members) {
                      DecodeOptions one = options;

@@ -8,6 +8,7 @@ import gzip
 import json
 import os
 import pathlib
+import resource
 import shutil
 import signal
 import subprocess
@@ -266,6 +267,27 @@ class Each(testing.Folder):
         self.assertGreater(sum(line["shown"] for line in filtered), 0)
         wrong = run("decode", "--each", self.runs, "--filter", "message==nothing")
         self.assertEqual((wrong.returncode, wrong.stdout), (USAGE, ""))
+
+    def test_specs_are_read_once(self):
+        """A run that fits none looks at all; what they take to read is spent for one run."""
+        strange = self.folder / "strange"
+        strange.mkdir()
+        (strange / "0.hex").write_text("00ffff000501000e00\n")
+        for words in (("check",), ("decode", "--jobs", "2")):
+            alone = self.cpu_seconds(*words, "--each", strange / "0.hex")
+            for i in range(1, 30):
+                shutil.copy(strange / "0.hex", strange / f"{i}.hex")
+            self.assertLess(self.cpu_seconds(*words, "--each", strange), 10 * alone)
+
+    def cpu_seconds(self, *words):
+        """The least of some attempts."""
+        taken = []
+        for _ in range(3):
+            before = resource.getrusage(resource.RUSAGE_CHILDREN)
+            run(*words)
+            after = resource.getrusage(resource.RUSAGE_CHILDREN)
+            taken.append(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
+        return min(taken)
 
     def test_output_that_breaks(self):
         self.assertEqual(run("check", "--each", self.runs, "--out", "/dev/full").returncode, OUTPUT)

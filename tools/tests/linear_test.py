@@ -109,29 +109,41 @@ MEMORY_MOST = 20  # Times the file's size.
 MEMORY_FLOOR = 2 << 20
 
 
-# A process's most memory begins with that of the one that started it: here, a small one.
+# A process's most memory begins with that of the one that started it: here, a small one, which
+# takes a list of words a line and the file for what they write.
 STARTER = """
 import os, sys
-nowhere = (os.POSIX_SPAWN_OPEN, 2, os.devnull, os.O_WRONLY, 0)
-child = os.posix_spawn(sys.argv[1], sys.argv[1:], os.environ, file_actions=[nowhere])
-_, status, usage = os.wait4(child, 0)
-print(os.waitstatus_to_exitcode(status), usage.ru_utime + usage.ru_stime, usage.ru_maxrss,
-      file=sys.stderr)
+for line in sys.stdin:
+    out, *words = eval(line)
+    actions = [(os.POSIX_SPAWN_OPEN, 1, out, os.O_WRONLY, 0),
+               (os.POSIX_SPAWN_OPEN, 2, os.devnull, os.O_WRONLY, 0)]
+    child = os.posix_spawn(words[0], words, os.environ, file_actions=actions)
+    _, status, usage = os.wait4(child, 0)
+    print(os.waitstatus_to_exitcode(status), usage.ru_utime + usage.ru_stime, usage.ru_maxrss,
+          flush=True)
 """
 
 
-def measure(command, path, codes=(0, 1, 3)):
-    """Returns bytes written, CPU seconds and the most memory."""
-    with tempfile.TemporaryFile() as out:
-        words = [path.parent / "report" if word == "@" else word for word in command]
-        done = subprocess.run([sys.executable, "-ISc", STARTER, RUBRIC, *words, path], stdout=out,
-                              stderr=subprocess.PIPE, check=True)
-        code, cpu, most_kib = done.stderr.split()
-        assert int(code) in codes, (command, code)
-        return out.seek(0, os.SEEK_END), float(cpu), int(most_kib) * 1024
-
-
 class Linear(Folder):
+    @classmethod
+    def setUpClass(cls):
+        cls.starter = subprocess.Popen([sys.executable, "-ISc", STARTER], stdin=subprocess.PIPE,
+                                       stdout=subprocess.PIPE, text=True)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.starter.communicate()
+
+    def measure(self, command, path, codes):
+        """Returns bytes written, CPU seconds and the most memory."""
+        with tempfile.NamedTemporaryFile() as out:
+            words = [path.parent / "report" if word == "@" else word for word in command]
+            print([str(word) for word in (out.name, RUBRIC, *words, path)],
+                  file=self.starter.stdin, flush=True)
+            code, cpu, most_kib = self.starter.stdout.readline().split()
+            self.assertIn(int(code), codes, command)
+            return out.seek(0, os.SEEK_END), float(cpu), int(most_kib) * 1024
+
     def grows(self, name, command, inputs, path, codes=(0, 1, 3), cpu_most=CPU_MOST,
               cpu_floor_s=CPU_FLOOR_S):
         """Returns the memory for each of the inputs."""
@@ -139,7 +151,7 @@ class Linear(Folder):
         memory = []
         for data in inputs:
             path.write_bytes(data)
-            size, cpu, most = measure(command, path, codes)
+            size, cpu, most = self.measure(command, path, codes)
             if before:
                 self.assertLessEqual(size, BYTES_MOST * before[0] + 2000, (name, command))
                 self.assertLessEqual(cpu, cpu_most * max(before[1], cpu_floor_s), (name, command))

@@ -241,6 +241,11 @@ TEST(Ticks, ThereAndBackIsTheSameTickUntilTheLast) {
   for (Ticks ticks = kLast; ticks > kLast - 1000; --ticks) ASSERT_TRUE(same(ticks)) << ticks;
 }
 
+TEST(Ticks, TimesOfACaptureMayBeFarOff) {
+  constexpr std::uint64_t kSeconds = 10'000'000'000;
+  EXPECT_EQ(ticks_of(kSeconds * 1'000'000 + 977), static_cast<Ticks>(kSeconds * 1024 + 1));
+}
+
 TEST(Ticks, OtherUnitsAreCutOffToo) {
   EXPECT_EQ(ticks_of(1000, 1000), 1024U);
   EXPECT_EQ(ticks_of(1, 1000), 1U);    // 1.024
