@@ -17,7 +17,7 @@ struct CaseUse {
 };
 
 /// By file, then as they stand there; each case once for a rule and a sign.
-inline constexpr std::array<CaseUse, 2770> kCaseUses{{
+inline constexpr std::array<CaseUse, 2772> kCaseUses{{
     {"after_set_island.base_station",
      "conformance/cases/after_set_island.rtr", "N9-SET"_rule, false},
     {"after_set_island.base_station",
@@ -2982,6 +2982,7 @@ inline constexpr std::array<CaseUse, 2770> kCaseUses{{
     {"t2.sink_line", "conformance/cases/serial_line.rtr", "T2-UNRELIABLE"_rule, true},
     {"t2.sink_line", "conformance/cases/serial_line.rtr", "T2-BROADCAST"_rule, true},
     {"t2.sink_line", "conformance/cases/serial_line.rtr", "T2-LOOP"_rule, true},
+    {"t2.sink_line", "conformance/cases/serial_line.rtr", "T2-CONTENT"_rule, true},
     {"t2.sink_line", "conformance/cases/serial_line.rtr", "N6-ONCE"_rule, true},
     {"n9.sink_line", "conformance/cases/serial_line.rtr", "N9-SET"_rule, false},
     {"n9.sink_line", "conformance/cases/serial_line.rtr", "N9-OTHER"_rule, false},
@@ -2991,6 +2992,7 @@ inline constexpr std::array<CaseUse, 2770> kCaseUses{{
     {"t2.base_station_line", "conformance/cases/serial_line.rtr", "T2-UNRELIABLE"_rule, true},
     {"t2.base_station_line", "conformance/cases/serial_line.rtr", "T2-BROADCAST"_rule, true},
     {"t2.base_station_line", "conformance/cases/serial_line.rtr", "T2-LOOP"_rule, true},
+    {"t2.base_station_line", "conformance/cases/serial_line.rtr", "T2-CONTENT"_rule, true},
     {"t1.base_station_line", "conformance/cases/serial_line.rtr", "T1-UNKNOWN"_rule, true},
     {"t1.sink_line", "conformance/cases/serial_line.rtr", "T1-UNKNOWN"_rule, true},
     {"n11.sink_line_whole", "conformance/cases/serial_line.rtr", "N11-WHOLE"_rule, true},
