@@ -71,6 +71,7 @@ Shard parse_shard(const std::string& text) {
 struct OneRun {
   std::string file;
   std::string name;
+  bool of_all = false;  // A folder that cannot be read may hold files of each shard.
 };
 
 bool is_wanted(const fs::path& file) {
@@ -82,8 +83,8 @@ bool is_wanted(const fs::path& file) {
 
 // What cannot be looked at, a folder too, is a run that cannot be read: it is not passed over.
 void add_folder(const fs::path& top, std::vector<OneRun>& out) {
-  const auto add = [&](const fs::path& path) {
-    out.push_back({path.string(), path.lexically_relative(top).string()});
+  const auto add = [&](const fs::path& path, bool folder) {
+    out.push_back({path.string(), path.lexically_relative(top).string(), folder});
   };
   std::vector<fs::path> folders = {top};
   while (!folders.empty()) {
@@ -97,10 +98,10 @@ void add_folder(const fs::path& top, std::vector<OneRun>& out) {
         folders.push_back(entry->path());
       } else if (is_wanted(entry->path()) &&
                  (entry->is_regular_file(unknown) || !entry->exists(unknown))) {
-        add(entry->path());
+        add(entry->path(), false);
       }
     }
-    if (error) add(folder);
+    if (error) add(folder, true);
   }
 }
 
@@ -137,7 +138,7 @@ std::vector<OneRun> runs_of(const std::vector<std::string>& names, const Shard& 
   std::vector<OneRun> out;
   std::set<std::string> once;
   for (OneRun& run : all) {
-    const bool mine = hash_of(run.name) % shard.of == shard.part - 1;
+    const bool mine = run.of_all || hash_of(run.name) % shard.of == shard.part - 1;
     if (mine && once.insert(run.file).second) out.push_back(std::move(run));
   }
   std::sort(out.begin(), out.end(),
