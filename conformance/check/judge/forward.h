@@ -15,6 +15,7 @@ namespace rubric::check {
 struct Passing {
   Net net;
   Place place;
+  std::int64_t last_us = 0;    ///< When it came, or was repeated, for the last time.
   std::int64_t whole_us = -1;  ///< When the sink has it whole.
   std::uint64_t order = 0;     ///< Counts arrivals at the sink.
   std::uint16_t sender = kNobody;
@@ -49,7 +50,7 @@ class Forwarding {
   void heard_on_radio(const Observation& seen, std::uint16_t sender, const Net& net,
                       std::uint16_t surely_received_by, std::uint16_t off);
   /// Notes that the link repeated the frame: on the air, or down the serial line of `sink`.
-  void repeated(const Net& net, std::uint16_t sink);
+  void repeated(const Net& net, std::uint16_t sink, std::int64_t now_us);
   /// Takes a message down the serial line of `sink`.
   void heard_on_serial(std::uint16_t sink, std::uint16_t base, const Observation& seen,
                        const Net& net, Down down);

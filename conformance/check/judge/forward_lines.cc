@@ -74,7 +74,7 @@ void Forwarding::change_island(Line& line, std::uint16_t island, std::int64_t no
 void Forwarding::begin_life(std::uint16_t sink, std::int64_t since_us) {
   Line* const line = find(sink);
   if (line == nullptr) return;
-  const auto later = [&](const Passing& one) { return one.place.time_us >= since_us; };
+  const auto later = [&](const Passing& one) { return one.last_us >= since_us; };
   line->up.keep_newest(later);
   line->down.keep_newest(later);
   forget_owed(line->up);
@@ -109,6 +109,7 @@ void Forwarding::store(Way& way, const Passing& passing) {
     ++way.forgotten;
   }
   Passing& stored = way.push(passing);
+  stored.last_us = passing.place.time_us;
   if (passing.owed) ++way.owed;
   for (std::size_t i = 1; i < std::min(way.size(), kTwinsLook); ++i) {
     Passing& other = way.newest(i);
@@ -118,7 +119,7 @@ void Forwarding::store(Way& way, const Passing& passing) {
   }
 }
 
-void Forwarding::repeated(const Net& net, std::uint16_t sink) {
+void Forwarding::repeated(const Net& net, std::uint16_t sink, std::int64_t now_us) {
   for (Line& line : lines_) {
     if (sink != kNobody && line.sink != sink) continue;
     Way& way = sink == kNobody ? line.up : line.down;
@@ -127,6 +128,7 @@ void Forwarding::repeated(const Net& net, std::uint16_t sink) {
       if (!same_message(passing.net, net)) continue;
       if (passing.copies < 255) ++passing.copies;
       passing.twin = true;
+      passing.last_us = now_us;
       break;
     }
   }

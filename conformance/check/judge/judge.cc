@@ -375,8 +375,8 @@ void Judge::repeated(std::uint32_t index, const Observation& seen, const Mark& m
                      "A link's repetition within " + ms_text(kLinkRepeatUs) + ".",
                      {}});
   }
-  forwarding_.repeated(net, serial ? who_.devices[mark.device].partner : kNobody);
   const std::int64_t now = seen.place.time_us;
+  forwarding_.repeated(net, serial ? who_.devices[mark.device].partner : kNobody, now);
   if (!serial && mark.device != kNobody) synaptic_.repeated(mark.device, now);
   context_.for_motes(seen.frame.dest, [&](std::uint16_t mote) { acks_.repeated(mote, net, now); });
   for (const std::uint16_t sink : context_.sinks) acks_.repeated(sink, net, now);

@@ -43,6 +43,18 @@ TEST(AlignLogs, NobodyIsBlamedForTheClockOfALog) {
   }
 }
 
+// From the simulator: a sink radiates what it has not confirmed, loses its power, and radiates it
+// again when its host repeats it.
+TEST(Recordings, ASinkThatStartsAnewMayRadiateAgainWhatIsRepeatedToIt) {
+  RunReader reader{AlignOptions{}};
+  std::string error;
+  ASSERT_TRUE(
+      reader.add_file("conformance/check/tests/testdata/repeated_to_two_lives.pcapng", error))
+      << error;
+  // What waited so long was acked late.
+  EXPECT_EQ(broken_in(judge(reader.finish(), complete())), "T2-PROMPT (weak)");
+}
+
 TEST(AlignLogs, NobodyIsBlamedForItsDrift) {
   const Recorded run = recorded("timeline", 300'000'000);
   for (const int ppm : {-200, 50}) {
