@@ -153,7 +153,6 @@ TEST(Mutants, TheWholeSuiteCallsFewRulesBroken) {
   EXPECT_GE(hit * 10, tried * 9);
 }
 
-// The nearest miss of a failure has the message that was expected, and is in its window.
 // Makes a wrapper that acks what must not be acked, 800 ticks after it came by its line.
 StepMaker acking_late(bool (*which)(const Forged&)) {
   return [=]() -> Step {
@@ -196,6 +195,7 @@ TEST(Mutants, AnAckThatComesLateIsBlamedForItsMessage) {
   EXPECT_EQ(tried, 2);
 }
 
+// The nearest miss of a failure has the message that was expected, and is in its window.
 TEST(Mutants, NearestHintsAreOfTheMessageAndInItsWindow) {
   const std::regex nearest(R"(^nearest, at (\d+): \S+ (\w+)\()");
   std::size_t hints = 0;
