@@ -71,7 +71,7 @@ Shard parse_shard(const std::string& text) {
 struct OneRun {
   std::string file;
   std::string name;
-  bool of_all = false;  // A folder that cannot be read may hold files of each shard.
+  bool of_all = false;  // A folder that cannot be read, or is not there, may hold each shard's.
 };
 
 bool is_wanted(const fs::path& file) {
@@ -128,8 +128,10 @@ std::vector<OneRun> runs_of(const std::vector<std::string>& names, const Shard& 
     const std::size_t before = all.size();
     if (fs::is_directory(name, ignored)) {
       add_folder(name, all);
-    } else if (fs::exists(name, ignored) || name.find_first_of("*?[") == name.npos) {
+    } else if (fs::exists(name, ignored)) {
       all.push_back({name, fs::path(name).filename().string()});
+    } else if (name.find_first_of("*?[") == name.npos) {
+      all.push_back({name, name, true});  // It may have been a folder.
     } else {
       add_pattern(name, all);
     }

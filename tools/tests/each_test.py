@@ -160,6 +160,9 @@ class Each(testing.Folder):
                 run("check", "--each", moved, "--shard", f"{k + 1}/{shards}").stdout)
                 if "a_new_one" not in line["file"]]
             self.assertEqual(again, part)
+        for k in range(2):  # Where one machine lacks the folder, nothing of its part was judged.
+            self.assertEqual(run("check", "--each", self.folder / "absent", "--shard",
+                                 f"{k + 1}/2").returncode, UNREADABLE)
         for text in ("0/2", "3/2", "1", "1/0", "a/b", "1/2x", "/"):
             self.assertEqual(run("check", "--each", self.runs, "--shard", text).returncode, USAGE)
 
