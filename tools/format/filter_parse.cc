@@ -151,6 +151,11 @@ Operand read_number(const Token& token) {
     operand.real = static_cast<double>(operand.integer);
     return operand;
   }
+  const bool too_long = natural.ec == std::errc::result_out_of_range && natural.ptr == end;
+  if (too_long || (whole.ec == std::errc::result_out_of_range && whole.ptr == end)) {
+    // The nearest double would be equal to numbers that are not it.
+    throw FilterError(fmt::format("'{}' is beyond 64 bits", token.text), token.position);
+  }
   operand.kind = Operand::Kind::kReal;
   const auto real = std::from_chars(begin, end, operand.real);
   if (real.ec != std::errc{} || real.ptr != end) {

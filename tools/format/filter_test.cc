@@ -116,6 +116,8 @@ const BadCase kBad[] = {
     {"index==1 index==2", 9, "expected '&&', '||' or the end"},
     {"index==0x", 7, "'0x' is not a number"},
     {"index==0xfffffffffffffffff", 7, "'0xfffffffffffffffff' is not a number"},
+    {"index==18446744073709551616", 7, "'18446744073709551616' is beyond 64 bits"},
+    {"index==-9223372036854775809", 7, "'-9223372036854775809' is beyond 64 bits"},
     {"index==12ms", 7, "'12ms' is not a number"},
     {"index==1.2.3", 7, "'1.2.3' is not a number"},
     {"interface=='serial", 11, "this string does not end"},
