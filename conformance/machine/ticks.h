@@ -17,7 +17,7 @@ inline constexpr Micros kTicksPerSecond = 1024;
 /// Returns the tick that has begun at `time`, counted in units of which `per_second` make a second.
 /// Of times whose ticks do not fit, the lower bits.
 constexpr Ticks ticks_of(std::int64_t time, std::int64_t per_second = kUsPerSecond) {
-  // Whole seconds by themselves: captures have times of which 1024 times as many overflow.
+  // Whole seconds are converted by themselves, as 1024 times a capture's time may overflow.
   return static_cast<Ticks>(time / per_second * kTicksPerSecond +
                             time % per_second * kTicksPerSecond / per_second);
 }

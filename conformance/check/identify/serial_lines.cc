@@ -101,7 +101,7 @@ void SerialLines::look(std::uint32_t index) {
   const bool known = std::ranges::find(line.its, its) != line.its.end();
   if (its != kNoIsland && !known && line.its.size() < kShownMax) line.its.push_back(its);
   if (line.told && its != kNoIsland) line.back = its != line.island ? its : kNoIsland;
-  // What was under way when it was told its island is the first that shows the former one.
+  // A report that was under way when the host set the island is the first to show the former one.
   const bool under_way = std::exchange(line.first_told, false) && seen.place.timed() &&
                          seen.place.time_us - line.set_us <= kUnderWayUs;
   if (under_way && reported != kNoIsland && reported != line.island) {

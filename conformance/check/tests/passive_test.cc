@@ -418,7 +418,7 @@ TEST(Passive, WhatComesFromOtherIslandsIsSeenOnNoLine) {
   EXPECT_TRUE(acks({11, 2}));
 }
 
-// Nothing else shows of which island the sink was before it was told the one of its host.
+// Nothing else shows the island that the sink had before its host set another.
 TEST(Passive, AReportThatIsUnderWayShowsTheFormerIsland) {
   const auto found = [](double reported_ms) {
     Script script;

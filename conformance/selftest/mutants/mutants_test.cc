@@ -169,7 +169,7 @@ StepMaker acking_late(bool (*which)(const Forged&)) {
   };
 }
 
-// The message that it answers is told by its number, also where the next one has come.
+// The number tells which message it answers, also where the next one has come.
 TEST(Mutants, AnAckThatComesLateIsBlamedForItsMessage) {
   const auto blamed = [](const CaseRef& ref, const StepMaker& step) {
     std::set<std::string> out;
