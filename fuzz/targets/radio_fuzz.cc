@@ -50,7 +50,8 @@ unsigned little(const Kept& kept, std::size_t at) {
   return static_cast<unsigned>(static_cast<std::uint8_t>(kept.bytes[at + 1])) << 8 | low;
 }
 
-// IEEE 802.15.4-2006, section 7.2.1.1, by the fields of the frame control.
+// IEEE 802.15.4-2006, section 7.2.1.1, by the fields of the frame control. Later versions place
+// short addresses of one PAN alike.
 void check_addresses(const Kept& kept, const reflect::Frame& frame) {
   require(frame.mac.present == (kept.bytes.size() >= 3), "three bytes have control and number");
   if (kept.bytes.size() < 9) return require(!frame.mac.has_addresses, "addresses need nine bytes");
@@ -60,8 +61,8 @@ void check_addresses(const Kept& kept, const reflect::Frame& frame) {
   const bool one_pan = (control >> 6 & 1u) != 0;
   const bool short_dest = (control >> 10 & 3u) == 2;
   const bool short_src = (control >> 14 & 3u) == 2;
-  const bool known = (control >> 12 & 3u) <= 1;  // The versions of 2003 and 2006.
-  const bool usual = data && !secured && one_pan && short_dest && short_src && known;
+  const bool newer = (control >> 8 & 3u) != 0;  // Of 2015: no number, or information elements.
+  const bool usual = data && !secured && one_pan && short_dest && short_src && !newer;
   require(frame.mac.has_addresses == usual, "short addresses of one PAN are read, others not");
   if (!usual) return require(!frame.am.present, "only data frames carry active messages");
   require(frame.mac.destpan == little(kept, 3) && frame.mac.dest == little(kept, 5) &&
