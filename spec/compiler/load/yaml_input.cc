@@ -7,6 +7,8 @@
 #include <array>
 #include <charconv>
 
+#include "codec/text/text.h"
+
 namespace rubricc {
 namespace {
 
@@ -15,16 +17,18 @@ constexpr std::array<std::string_view, 6> kOfKaitai{"params",  "process",   "rep
                                                     "include", "to-string", "expr"};
 
 constexpr int kNestingMax = 60;
+constexpr std::string_view kPlain = "a spec is plain UTF-8 text";
 
 /// Refuses text that breaks yaml-cpp, which takes 0x04 for the end of the input and recurses as
-/// deep as brackets nest.
+/// deep as brackets nest, or what is made of it: JSON is UTF-8.
 bool is_plain_text(const std::string& file, const std::string& text, Diagnostics& diagnostics) {
   if (text.size() > kFileBytesMax) {
     diagnostics.error({file, 0, 0}, "the file is too large", "at most 1 MiB is read");
     return false;
   }
   int line = 1, column = 1, nesting = 0;
-  for (const char c : text) {
+  for (std::size_t at = 0, length = 0; at < text.size(); at += length) {
+    const char c = text[at];
     if (c == '[' || c == '{') ++nesting;
     if ((c == ']' || c == '}') && nesting > 0) --nesting;
     if (nesting > kNestingMax) {
@@ -34,11 +38,15 @@ bool is_plain_text(const std::string& file, const std::string& text, Diagnostics
     }
     const unsigned char u = static_cast<unsigned char>(c);
     if ((u < 0x20 && c != '\n' && c != '\r' && c != '\t') || u == 0x7F) {
-      diagnostics.error({file, line, column}, fmt::format("control character 0x{:02x}", u),
-                        "a spec is plain UTF-8 text");
+      diagnostics.error({file, line, column}, fmt::format("control character 0x{:02x}", u), kPlain);
       return false;
     }
-    ++column;
+    length = rubric::text::utf8_length(std::string_view(text).substr(at));
+    if (length == 0) {
+      diagnostics.error({file, line, column}, fmt::format("byte 0x{:02x} is not UTF-8", u), kPlain);
+      return false;
+    }
+    column += static_cast<int>(length);
     if (c == '\n') {
       ++line;
       column = 1;
