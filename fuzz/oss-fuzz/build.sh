@@ -15,6 +15,7 @@ export CXXFLAGS="${CXXFLAGS//-stdlib=libc++/} -DFMT_CONSTEVAL="
 # Libraries that a runner may lack are copied beside the targets, which look for them there.
 cmake -S "$project" -B "$build" -G Ninja \
   -DCMAKE_BUILD_RPATH='$ORIGIN/lib' -DCMAKE_EXE_LINKER_FLAGS=-Wl,--disable-new-dtags \
+  -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=0 \
   -DRUBRIC_FUZZ=ON -DRUBRIC_FUZZ_ENGINE="$LIB_FUZZING_ENGINE" -DRUBRIC_TESTS=OFF
 mapfile -t targets < <(cut -f1 "$build/fuzz_targets.tsv")
 cmake --build "$build" --target "${targets[@]/%/_fuzz}"
