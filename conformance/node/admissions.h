@@ -120,8 +120,12 @@ inline Admission* Admissions::acknowledge(uint16_t devid, uint16_t seq_num) {
   //= J3-OVERWRITE: A new mote never takes the place of a listed member.
   if (is_full()) return nullptr;
   ++members_;
-  entry->state = Admission::State::kOwed;
-  return entry;
+  // Behind the others, so that reports wait in the order of the joins, not of the requests.
+  Admission member = *entry;
+  member.state = Admission::State::kOwed;
+  erase(static_cast<uint8_t>(entry - entries_));
+  entries_[count_] = member;
+  return &entries_[count_++];
 }
 
 inline Admission* Admissions::owed() {
