@@ -47,7 +47,7 @@ Whole whole_of(const Value& value) {
 
 double number_of(const Value& value) {
   constexpr double kNanoseconds = 1e9;
-  if (value.kind == ValueKind::kReal) return value.real;
+  if (value.kind == ValueKind::kReal || value.kind == ValueKind::kUnit) return value.real;
   const auto integer = whole_of(value).first
                            ? static_cast<double>(static_cast<std::uint64_t>(value.integer))
                            : static_cast<double>(value.integer);
@@ -56,7 +56,8 @@ double number_of(const Value& value) {
 
 bool is_number(const Value& value) {
   return value.kind == ValueKind::kInteger || value.kind == ValueKind::kReal ||
-         value.kind == ValueKind::kTime || value.kind == ValueKind::kBits;
+         value.kind == ValueKind::kUnit || value.kind == ValueKind::kTime ||
+         value.kind == ValueKind::kBits;
 }
 
 bool is_whole(const Value& value) {
