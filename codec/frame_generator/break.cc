@@ -91,7 +91,7 @@ class Breaker {
     const Part& measure = number_of(p);
     const std::uint32_t limit = draft_.limit(p.scope);
     const std::int64_t least = (limit - p.at) / p.element_bytes + 1;
-    const std::int64_t most = allowed(*measure.field).max;
+    const auto most = static_cast<std::int64_t>(allowed(*measure.field).max);
     if (least > most) return false;
     const std::int64_t number = random_.chance(0.6) ? least : random_.between(least, most);
     if (!is_allowed(*measure.field, number)) return false;
@@ -109,7 +109,8 @@ class Breaker {
     if (part == kNone) return false;
     const Part& p = draft_.parts[part];
     const Part& measure = number_of(p);
-    const std::int64_t least = std::max<std::int64_t>(0, allowed(*measure.field).min);
+    const auto least =
+        static_cast<std::int64_t>(std::max<reflect::Whole>(0, allowed(*measure.field).min));
     const std::int64_t most = std::int64_t{p.size} - 1;
     if (least > most) return false;
     const std::int64_t number = random_.chance(0.5) ? most : random_.between(least, most);
@@ -397,7 +398,7 @@ class FieldChange {
     } else if (way == 6) {
       value = now ^ std::int64_t{1} << random_.below(8u * f.width_bytes);
     } else if (!refused_value(f, random_, value)) {
-      value = held(f).max;
+      value = static_cast<std::int64_t>(f.held().max);
     }
     if (value == now) return false;
     reflect::store_number(f, value, bytes_.data() + at);

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "codec/frame_generator/known_protocols.h"
+#include "codec/frame_generator/values.h"
 #include "codec/generated/rubicon/messages.h"
 #include "codec/reflect/frame.h"
 
@@ -237,6 +238,30 @@ TEST(NearValid, LengthsAreOffByOneInBothDirections) {
   std::map<int, int> count =
       off_by_one("learning_module_cmd", 15, 16, "WIRE-LEARNING-MODULE-CMD"_rule);
   EXPECT_GT(count[1], 20);
+}
+
+TEST(Values, OfSixtyFourBitsReachBothEndsOfTheirRange) {
+  constexpr std::int64_t kLeast = 10;
+  constexpr std::int64_t kMost = -3;  // The bits of 2^64 - 3.
+  const reflect::Field field{.kind = reflect::Kind::kUint,
+                             .width_bytes = 8,
+                             .valid = {reflect::ValidKind::kRange, kLeast, kMost, nullptr, 0},
+                             .expect = -1};
+  Random random(8);
+  std::map<std::int64_t, int> met;
+  int above_int64 = 0;
+  for (int i = 0; i < kSeeds; ++i) {
+    const std::int64_t value = allowed_value(field, random);
+    ASSERT_TRUE(is_allowed(field, value)) << value;
+    above_int64 += value < 0;
+    ++met[value];
+    std::int64_t refused = 0;
+    ASSERT_TRUE(refused_value(field, random, refused));
+    ASSERT_TRUE((refused >= 0 && refused < kLeast) || (refused > kMost && refused < 0)) << refused;
+    ++met[refused];
+  }
+  EXPECT_GT(above_int64, kSeeds / 4);
+  for (const std::int64_t end : {kLeast - 1, kLeast, kMost, kMost + 1}) EXPECT_GT(met[end], 20);
 }
 
 INSTANTIATE_TEST_SUITE_P(Protocols, Generator, ::testing::ValuesIn(all_known()),

@@ -166,9 +166,10 @@ class FrameWriter {
     const bool given = f.kind != Kind::kBits && forced(f, size(), value);
     if (given && !is_allowed(f, value)) return false;
     // The measure of a structure is corrected when the structure is written.
-    if (!given)
-      value =
-          measures_room(f, place) ? allowed(f).min : allowed_value(f, most_for(f, place), random_);
+    if (!given) {
+      value = measures_room(f, place) ? static_cast<std::int64_t>(allowed(f).min)
+                                      : allowed_value(f, most_for(f, place), random_);
+    }
     const std::uint32_t part = add_part(PartKind::kNumber, f, place);
     draft_.parts[part].at -= f.shared_bytes();
     put(f, value);
@@ -191,17 +192,17 @@ class FrameWriter {
   }
 
   // Returns the most that a number may be so that the array which it counts has room.
-  std::int64_t most_for(const Field& f, const Place& place) const {
+  reflect::Whole most_for(const Field& f, const Place& place) const {
     const std::size_t behind = left(place) + f.shared_bytes() - f.width_bytes;
     for (const Field* g = &f + 1; g < place.type.fields + place.type.field_count; ++g) {
       if (g->repeat == Repeat::kCount && is_alone(g->count, f, place)) {
-        return static_cast<std::int64_t>(behind / element_bytes(*g));
+        return behind / element_bytes(*g);
       }
       if (g->extent == Extent::kSize && is_alone(g->size, f, place)) {
-        return static_cast<std::int64_t>(behind);
+        return behind;
       }
     }
-    return held(f).max;
+    return f.held().max;
   }
 
   bool measures_room(const Field& f, const Place& place) const {
@@ -369,14 +370,14 @@ class FrameWriter {
     const std::uint32_t measure = measure_of(f.size, place);
     if (measure == kNone) return fixed(f, inner, part, place);
     const Field& number = *draft_.parts[measure].field;
-    const Span span = allowed(number);
+    const reflect::Span span = allowed(number);
     const std::size_t begin = size();
     const std::size_t room = std::min(left(place), static_cast<std::size_t>(span.max));
     const std::size_t scope = draft_.scopes.size();
     if (!call(*inner.type, inner.arguments, room, place)) return false;
     if (!takes_all(part + 1)) {
       stale(begin + room - size());
-      const auto least = static_cast<std::size_t>(std::max<std::int64_t>(span.min, 0));
+      const auto least = static_cast<std::size_t>(std::max<reflect::Whole>(span.min, 0));
       if (size() - begin < least) noise(least - (size() - begin));
     }
     const auto bytes = static_cast<std::int64_t>(size() - begin);

@@ -9,21 +9,13 @@
 
 namespace rubric::generate {
 
-/// A range with both ends included.
-struct Span {
-  std::int64_t min;
-  std::int64_t max;
-};
-
-/// Returns the range of the field's bytes; for a float its 32 bits.
-Span held(const reflect::Field& field);
 /// Returns the least and the greatest value that the field's rule allows.
-Span allowed(const reflect::Field& field);
+reflect::Span allowed(const reflect::Field& field);
 /// Returns whether the field's rule allows it.
 bool is_allowed(const reflect::Field& field, std::int64_t value);
 
 /// Returns a value that the rule allows, at most `most`; the least allowed one if there is none.
-std::int64_t allowed_value(const reflect::Field& field, std::int64_t most, Random& random);
+std::int64_t allowed_value(const reflect::Field& field, reflect::Whole most, Random& random);
 std::int64_t allowed_value(const reflect::Field& field, Random& random);
 
 /// Sets `value` to one that the rule refuses, mostly next to an allowed one; returns false if it

@@ -11,4 +11,10 @@ class Broken : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// What a forwarder says that serves one program at a time, as a sink does: it closes the
+/// connection of another at once.
+inline constexpr char kTurnedAway[] =
+    "the other end closed it before it began: it may serve another program; 'rubric forward' "
+    "shares it";
+
 }  // namespace rubric::lines

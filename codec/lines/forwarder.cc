@@ -23,7 +23,7 @@ void ForwarderLine::begin(SteadyTime deadline) {
     try {
       more = read_some(deadline);
     } catch (const Broken&) {
-      throw Broken("the other end closed it before it began: it may serve another program");
+      throw Broken(kTurnedAway);
     }
     if (!more) broken("the other end does not begin a serial forwarder's connection");
   }

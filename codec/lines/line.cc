@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <stdexcept>
 
+#include "codec/lines/broken.h"
 #include "codec/lines/host_link.h"
 #include "codec/lines/serial.h"
 
@@ -108,6 +109,7 @@ InputFormat Line::format() const {
 
 void Line::open(lines::SteadyTime deadline) {
   stream_.close();  // A device is not had twice.
+  began_ = address_.kind != Address::Kind::kForwarder;
   stream_ = address_.kind == Address::Kind::kSerial
                 ? lines::open_serial_device(address_.device, address_.baud)
                 : lines::connect_tcp(address_.at, deadline);
@@ -118,8 +120,17 @@ void Line::open(lines::SteadyTime deadline) {
   stream_.write(Bytes(hello, sizeof hello), deadline);
 }
 
-std::size_t Line::read(MutableBytes out) {
-  return stream_.read(out, steady_clock::now() + kPatience);
+std::size_t Line::read(MutableBytes out) { return read(out, steady_clock::now() + kPatience); }
+
+std::size_t Line::read(MutableBytes out, lines::SteadyTime deadline) {
+  try {
+    const std::size_t size = stream_.read(out, deadline);
+    began_ = began_ || size > 0;
+    return size;
+  } catch (const Broken&) {
+    if (!began_) throw Broken(kTurnedAway);
+    throw;
+  }
 }
 
 void Line::answer(const Packet& packet) {

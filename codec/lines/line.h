@@ -51,9 +51,7 @@ class Line {
   /// Reads the next bytes; returns 0 if there are none for a short while.
   std::size_t read(MutableBytes out);
   /// Does the same until the deadline; returns 0 if the time is over first.
-  std::size_t read(MutableBytes out, lines::SteadyTime deadline) {
-    return stream_.read(out, deadline);
-  }
+  std::size_t read(MutableBytes out, lines::SteadyTime deadline);
   /// Returns how many of the bytes the line takes at once; 0: none.
   std::size_t write_some(Bytes bytes) { return stream_.write_some(bytes); }
   /// Signals the other end of a connection that nothing more comes from here.
@@ -67,6 +65,7 @@ class Line {
  private:
   Address address_;
   bool mute_;
+  bool began_ = false;  // The other end has sent something since open().
   lines::ByteStream stream_;
 };
 

@@ -128,7 +128,7 @@ class Encoder {
     };
     // Sizes grow with their measure, so the least value that is large enough is the right one.
     std::int64_t value = 0;
-    std::int64_t above = (std::int64_t{1} << (8 * field.width_bytes)) - 1;
+    auto above = static_cast<std::int64_t>(field.held().max);
     while (value < above) {
       const std::int64_t middle = value + (above - value) / 2;
       comes_to(middle) < wanted ? value = middle + 1 : above = middle;

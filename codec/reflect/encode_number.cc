@@ -16,19 +16,6 @@ using std::to_string;
 
 constexpr std::string_view kBitPrefix = "bit";
 
-struct Bounds {
-  std::int64_t min;
-  std::int64_t max;
-};
-
-Bounds bounds(const Field& f) {
-  const int bits = f.kind == Kind::kBits ? f.bit_width : 8 * f.width_bytes;
-  if (f.valid.kind == ValidKind::kRange) return {f.valid.min, f.valid.max};
-  const std::uint64_t most = ~std::uint64_t{0} >> (64 - bits);
-  if (f.kind != Kind::kSint) return {0, static_cast<std::int64_t>(most)};
-  return {-static_cast<std::int64_t>(most / 2) - 1, static_cast<std::int64_t>(most / 2)};
-}
-
 std::string quoted(std::string_view name) { return '"' + std::string(name) + '"'; }
 
 NumberResult problem(std::string text) { return {.problem = std::move(text)}; }
@@ -168,9 +155,8 @@ std::string number_problem(const Field& f, std::int64_t value) {
     for (int i = 0; i < f.valid.one_of_count; ++i) {
       if (f.valid.one_of[i] == value) return {};
     }
-  } else {
-    const Bounds allowed = bounds(f);
-    if (Valid::within(value, allowed.min, allowed.max)) return {};
+  } else if (f.limits().has(f.whole(value))) {
+    return {};
   }
   return "expected " + expectation(f) + ", given " + integer_text(f, value);
 }
@@ -184,9 +170,8 @@ std::string expectation(const Field& f) {
     }
     return values;
   }
-  const Bounds allowed = bounds(f);
-  std::string text =
-      "a number from " + integer_text(f, allowed.min) + " to " + integer_text(f, allowed.max);
+  const auto end = [&](Whole value) { return integer_text(f, static_cast<std::int64_t>(value)); };
+  std::string text = "a number from " + end(f.limits().min) + " to " + end(f.limits().max);
   if (f.enumeration) text += " or a name of " + std::string(f.enumeration->name);
   if (f.mask) text += " or an array of bits of " + std::string(f.mask->name);
   return text;

@@ -79,6 +79,17 @@ struct Expr {
 };
 constexpr int kMaxExprDepth = 8;
 
+/// The whole numbers of all fields, with a sign and without.
+__extension__ using Whole = __int128;
+
+/// A range with both ends included.
+struct Span {
+  Whole min;
+  Whole max;
+
+  constexpr bool has(Whole value) const { return min <= value && value <= max; }
+};
+
 /// The allowed values of an integer. Values compare as unsigned (as signed for Kind::kSint); those
 /// of Field::is_wide() are kept as the same bits.
 enum class ValidKind : uint8_t { kAny, kRange, kOneOf };
@@ -190,6 +201,19 @@ struct Field {
   /// Returns whether its values have 64 bits and no sign. Where numbers are kept as int64 they have
   /// the same bits: those from 2^63 on are negative there.
   constexpr bool is_wide() const { return kind == Kind::kUint && width_bytes == 8; }
+  /// Returns the number that is kept as these bits.
+  constexpr Whole whole(int64_t bits) const {
+    return is_wide() ? Whole{static_cast<uint64_t>(bits)} : Whole{bits};
+  }
+  /// Returns the least and the greatest number that its bits hold; for a float its 32 bits.
+  constexpr Span held() const {
+    const Whole all = Whole{1} << (kind == Kind::kBits ? bit_width : 8 * width_bytes);
+    return kind == Kind::kSint ? Span{-all / 2, all / 2 - 1} : Span{0, all - 1};
+  }
+  /// Returns the same within a range that its rule states.
+  constexpr Span limits() const {
+    return valid.kind == ValidKind::kRange ? Span{whole(valid.min), whole(valid.max)} : held();
+  }
 
   /// Returns how many of its bytes the field before it has too: 1 for bits that begin within one.
   constexpr uint8_t shared_bytes() const {

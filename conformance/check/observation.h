@@ -91,6 +91,18 @@ struct BusyTime {
   std::optional<machine::Link> line;  ///< Nothing: the application.
 };
 
+/// The join_requests that a sink was given between the first and the last line of its log.
+struct GivenRequests {
+  struct Request {
+    std::int64_t time_us;
+    std::uint16_t mote_am;
+    std::uint16_t seq_num;
+  };
+  std::int64_t from_us = INT64_MAX;
+  std::int64_t to_us = INT64_MIN;
+  std::vector<Request> all;
+};
+
 /// A node as a .rtr log describes it.
 struct LoggedNode {
   std::string name;
@@ -111,6 +123,8 @@ struct LoggedNode {
   std::vector<BusyTime> busy;        ///< In order of their beginning.
   std::vector<std::int64_t> link_acks_us;      ///< When its link told it of an acknowledgement.
   std::vector<std::int64_t> link_failures_us;  ///< When it told that none came.
+  /// Of a sink whose frames were left out, as a capture has them.
+  std::optional<GivenRequests> requests;
 
   /// Returns whether the run shows then what the node does.
   bool shown(std::int64_t time_us) const { return from_us <= time_us && time_us <= to_us; }

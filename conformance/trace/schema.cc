@@ -131,25 +131,18 @@ class Walk {
 
 Domain Domain::of(const Field& field, const Type& owner) {
   Domain domain;
-  const bool some_bits = field.kind == reflect::Kind::kBits;
-  const int bits = some_bits ? field.bit_width : 8 * field.width_bytes;
   switch (field.kind) {
     case reflect::Kind::kFloat: domain.kind = Kind::kReal; break;
     case reflect::Kind::kBytes:
       if (reflect::holds_characters(field)) domain.characters = &field;
       [[fallthrough]];
     case reflect::Kind::kStruct: domain.kind = Kind::kBytes; break;
-    case reflect::Kind::kSint:
-      domain.min = -(std::int64_t{1} << (bits - 1));
-      domain.max = (std::int64_t{1} << (bits - 1)) - 1;
-      break;
-    default: domain.max = (std::int64_t{1} << bits) - 1;
+    default:
+      domain.min = static_cast<std::int64_t>(field.limits().min);
+      domain.max = static_cast<std::int64_t>(field.limits().max);
   }
-  if (field.valid.kind == reflect::ValidKind::kRange) {
-    domain.min = field.valid.min;
-    domain.max = field.valid.max;
-  }
-  domain.derived = !some_bits && measures(field, owner);  // The encoder fills no bits in.
+  // The encoder fills no bits in.
+  domain.derived = field.kind != reflect::Kind::kBits && measures(field, owner);
   domain.implied = field.expect;
   if (field.valid.kind == reflect::ValidKind::kOneOf && field.valid.one_of_count == 1) {
     domain.implied = field.valid.one_of[0];

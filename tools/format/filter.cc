@@ -38,25 +38,21 @@ bool is_hex_of(std::string_view text, Bytes bytes) {
   return true;
 }
 
-/// Whether a whole number is above INT64_MAX, and its bits: in this order pairs compare as the
-/// numbers do.
-using Whole = std::pair<bool, std::int64_t>;
-Whole whole_of(const Value& value) {
-  return {value.integer < 0 && value.field && value.field->is_wide(), value.integer};
+reflect::Whole whole_of(const Value& value) {
+  return value.field ? value.field->whole(value.integer) : value.integer;
 }
 
 double number_of(const Value& value) {
   constexpr double kNanoseconds = 1e9;
-  if (value.kind == ValueKind::kReal) return value.real;
-  const auto integer = whole_of(value).first
-                           ? static_cast<double>(static_cast<std::uint64_t>(value.integer))
-                           : static_cast<double>(value.integer);
+  if (value.kind == ValueKind::kReal || value.kind == ValueKind::kUnit) return value.real;
+  const auto integer = static_cast<double>(whole_of(value));
   return value.kind == ValueKind::kTime ? integer / kNanoseconds : integer;
 }
 
 bool is_number(const Value& value) {
   return value.kind == ValueKind::kInteger || value.kind == ValueKind::kReal ||
-         value.kind == ValueKind::kTime || value.kind == ValueKind::kBits;
+         value.kind == ValueKind::kUnit || value.kind == ValueKind::kTime ||
+         value.kind == ValueKind::kBits;
 }
 
 bool is_whole(const Value& value) {
@@ -67,9 +63,7 @@ bool is_float(const Value& value) { return value.kind == ValueKind::kReal && val
 
 bool compare_number(Compare op, const Value& value, const Operand& operand) {
   if (!is_number(value)) return false;
-  if (is_whole(value) && operand.kind == Operand::Kind::kInteger) {
-    return compare(op, whole_of(value), Whole{operand.wide, operand.integer});
-  }
+  if (is_whole(value)) return compare(op, 2 * whole_of(value), operand.halves);
   // A field of binary32 is compared with the nearest binary32, so that 0.1 means what it prints.
   if (is_float(value)) {
     return compare(op, static_cast<float>(value.real), static_cast<float>(operand.real));

@@ -33,9 +33,10 @@ enum class Compare : std::uint8_t { kEq, kNe, kLt, kLe, kGt, kGe };
 struct Operand {
   enum class Kind : std::uint8_t { kInteger, kReal, kText, kPath };
   Kind kind = Kind::kInteger;
-  std::int64_t integer = 0;
-  bool wide = false;  ///< kInteger: `integer` has the bits of a number above INT64_MAX.
-  double real = 0;    ///< Also of kInteger.
+  /// Twice the number, or where that is not whole the number between: they compare as all do with
+  /// twice a whole one.
+  reflect::Whole halves = 0;
+  double real = 0;
   std::string text;
   std::size_t path = 0;  ///< kPath: index into the filter's paths.
 };

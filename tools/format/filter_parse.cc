@@ -128,12 +128,39 @@ std::uint64_t read_hex(const Token& token) {
   return value;
 }
 
-Operand of_unsigned(std::uint64_t value) {
+Operand of_whole(reflect::Whole value) {
   Operand operand;
-  operand.integer = static_cast<std::int64_t>(value);
-  operand.wide = operand.integer < 0;
+  operand.halves = 2 * value;
   operand.real = static_cast<double>(value);
   return operand;
+}
+
+// Returns Operand::halves of a decimal; one beyond 64 bits is beyond all numbers that it meets.
+reflect::Whole halves_of(std::string_view text) {
+  constexpr reflect::Whole kBeyond = reflect::Whole{1} << 66;
+  const bool negative = text.starts_with('-');
+  text.remove_prefix(negative);
+  const std::size_t end = std::min(text.find_first_of("eE"), text.size());
+  std::size_t whole_digits = std::min(text.find('.'), end);
+  int exponent = 0;
+  if (end < text.size()) {
+    const char* const from = text.data() + end + 1 + (text[end + 1] == '+');
+    std::from_chars(from, text.data() + text.size(), exponent);
+  }
+  reflect::Whole whole = 0;
+  bool rest = false;
+  auto left = static_cast<std::ptrdiff_t>(whole_digits) + exponent;
+  for (const char c : text.substr(0, end)) {
+    if (c == '.') continue;
+    if (left-- > 0) {
+      whole = std::min(10 * whole + (c - '0'), kBeyond);
+    } else {
+      rest = rest || c != '0';
+    }
+  }
+  for (; left > 0 && whole > 0 && whole < kBeyond; --left) whole *= 10;
+  const reflect::Whole halves = 2 * std::min(whole, kBeyond) + rest;
+  return negative ? -halves : halves;
 }
 
 Operand read_number(const Token& token) {
@@ -141,16 +168,14 @@ Operand read_number(const Token& token) {
   const char* begin = token.text.data();
   const char* end = begin + token.text.size();
   if (token.text.starts_with("0x") || token.text.starts_with("0X")) {
-    return of_unsigned(read_hex(token));
+    return of_whole(read_hex(token));
   }
   std::uint64_t unsigned_value = 0;
   const auto natural = std::from_chars(begin, end, unsigned_value);
-  if (natural.ec == std::errc{} && natural.ptr == end) return of_unsigned(unsigned_value);
-  const auto whole = std::from_chars(begin, end, operand.integer);
-  if (whole.ec == std::errc{} && whole.ptr == end) {
-    operand.real = static_cast<double>(operand.integer);
-    return operand;
-  }
+  if (natural.ec == std::errc{} && natural.ptr == end) return of_whole(unsigned_value);
+  std::int64_t signed_value = 0;
+  const auto whole = std::from_chars(begin, end, signed_value);
+  if (whole.ec == std::errc{} && whole.ptr == end) return of_whole(signed_value);
   const bool too_long = natural.ec == std::errc::result_out_of_range && natural.ptr == end;
   if (too_long || (whole.ec == std::errc::result_out_of_range && whole.ptr == end)) {
     // The nearest double would be equal to numbers that are not it.
@@ -161,6 +186,7 @@ Operand read_number(const Token& token) {
   if (real.ec != std::errc{} || real.ptr != end) {
     throw FilterError(fmt::format("'{}' is not a number", token.text), token.position);
   }
+  operand.halves = halves_of(token.text);
   return operand;
 }
 
@@ -305,7 +331,7 @@ class FilterParser {
       if (token_.kind == TokenKind::kNumber) {
         const Operand number = read_number(token_);
         if (number.kind != Operand::Kind::kInteger) fail("a mask is a whole number");
-        term.mask |= number.integer;
+        term.mask |= static_cast<std::int64_t>(number.halves / 2);
       } else if (token_.kind == TokenKind::kWord) {
         const std::string name(token_.text);
         if (std::find(bits.begin(), bits.end(), name) == bits.end()) {

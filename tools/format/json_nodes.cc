@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <charconv>
 #include <cmath>
 
 #include "codec/reflect/decode.h"
@@ -58,14 +59,78 @@ bool is_text(const Field* field) {
 }
 
 double converted(const Field& field, std::int64_t raw) {
-  double number = static_cast<double>(raw);
+  auto number = static_cast<double>(field.whole(raw));
   if (field.kind == Kind::kFloat) number = float_of_bits(static_cast<std::uint32_t>(raw));
-  if (field.is_wide()) number = static_cast<double>(static_cast<std::uint64_t>(raw));
   const double value = number * field.unit->scale + field.unit->offset;
   // 6340 * 0.01 - 40 is 23.4, not 23.400000000000006.
   constexpr double kSteps = 1e9;
   const double rounded = std::round(value * kSteps) / kSteps;
   return std::isfinite(rounded) && std::abs(rounded) < 1e6 ? rounded : value;
+}
+
+namespace {
+
+struct Decimal {
+  reflect::Whole digits;
+  int exponent;  ///< Of the power of ten that they are multiplied by.
+
+  /// Gives more digits after the point; returns whether they fit.
+  bool scale_to(int less) {
+    for (; exponent > less; --exponent) {
+      if (__builtin_mul_overflow(digits, 10, &digits)) return false;
+    }
+    return true;
+  }
+};
+
+/// Returns the shortest decimal that reads back as the same, as the spec has it.
+Decimal decimal_of(double value) {
+  char text[kMaxFloatChars] = {};
+  std::to_chars(text, std::end(text) - 1, value, std::chars_format::scientific);
+  Decimal out{0, 0};
+  bool fraction = false;
+  const char* at = text + (value < 0);
+  for (; *at != 'e'; ++at) {
+    if (*at == '.') {
+      fraction = true;
+    } else {
+      out.digits = out.digits * 10 + (*at - '0');
+      out.exponent -= fraction;
+    }
+  }
+  if (value < 0) out.digits = -out.digits;
+  out.exponent += std::atoi(at + 1);
+  return out;
+}
+
+/// Returns the text, or an empty one where the digits or the characters are too many.
+std::string decimal_text(const Field& field, std::int64_t raw) {
+  Decimal sum = decimal_of(field.unit->scale);
+  Decimal offset = decimal_of(field.unit->offset);
+  if (__builtin_mul_overflow(sum.digits, field.whole(raw), &sum.digits)) return {};
+  const int exponent = std::min({sum.exponent, offset.exponent, 0});
+  if (!sum.scale_to(exponent) || !offset.scale_to(exponent)) return {};
+  if (__builtin_add_overflow(sum.digits, offset.digits, &sum.digits)) return {};
+  while (sum.exponent < 0 && sum.digits % 10 == 0) {
+    sum.digits /= 10;
+    ++sum.exponent;
+  }
+  const auto decimals = static_cast<std::size_t>(-sum.exponent);
+  std::string out;  // From its end.
+  for (reflect::Whole rest = sum.digits; rest != 0 || out.size() <= decimals; rest /= 10) {
+    out += static_cast<char>('0' + std::abs(static_cast<int>(rest % 10)));
+  }
+  if (decimals != 0) out.insert(decimals, ".");
+  if (sum.digits < 0) out += '-';
+  std::reverse(out.begin(), out.end());
+  return out.size() <= kMaxFloatChars ? out : std::string();
+}
+
+}  // namespace
+
+char* put_converted(char* at, const Field& field, std::int64_t raw) {
+  const std::string text = field.kind == Kind::kFloat ? std::string() : decimal_text(field, raw);
+  return text.empty() ? put_double(at, converted(field, raw)) : put(at, std::string_view(text));
 }
 
 char* JsonNodes::value(char* at, const Decoded& decoded, std::size_t node) const {
@@ -114,7 +179,7 @@ char* JsonNodes::members(char* at, const Decoded& decoded, std::size_t from,
       for (std::uint32_t k = 0; k < node.count; ++k) {
         *at++ = ',';
         const std::uint8_t* raw = decoded.bytes.data() + node.offset + k * plan.field->width_bytes;
-        at = put_double(at, converted(*plan.field, reflect::load_number(*plan.field, raw)));
+        at = put_converted(at, *plan.field, reflect::load_number(*plan.field, raw));
       }
       at += at == open;
       *open = '[';
@@ -145,7 +210,7 @@ char* JsonNodes::number_beside(char* at, const FieldPlan& plan, std::int64_t val
   }
   if (field.mask) at = put_bits(at, plan, value);
   if (!plan.unit_key.empty()) {
-    at = put_double(put(at, std::string_view(plan.unit_key)), converted(field, value));
+    at = put_converted(put(at, std::string_view(plan.unit_key)), field, value);
   }
   return at;
 }

@@ -125,5 +125,8 @@ class JsonNodes {
 
 /// Returns the value of a raw number in its field's unit, rounded to the raw number's precision.
 double converted(const reflect::Field& field, std::int64_t raw);
+/// Writes the same of a whole number with all its digits, as scale and offset are decimals; beyond
+/// kMaxFloatChars characters the nearest double.
+char* put_converted(char* at, const reflect::Field& field, std::int64_t raw);
 
 }  // namespace rubric::format

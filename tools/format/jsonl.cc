@@ -6,6 +6,7 @@
 
 #include "codec/reflect/fault_text.h"
 #include "codec/text/text.h"
+#include "tools/format/plain_value.h"
 #include "tools/format/put.h"
 
 namespace rubric::format {
@@ -262,10 +263,14 @@ void append_json(const Value& value, const Record& record, const JsonNodes& node
   switch (value.kind) {
     case Value::Kind::kAbsent: out.append("null"); break;
     case Value::Kind::kInteger:
-      out.commit(put_int(out.reserve(kMaxIntChars), value.integer));
+    case Value::Kind::kTime:
+    case Value::Kind::kUnit: append_plain_value(value, record, nodes, out); break;
+    case Value::Kind::kReal: {
+      char* const at = out.reserve(kMaxFloatChars);
+      out.commit(value.field ? put_float(at, bits_of_float(static_cast<float>(value.real)))
+                             : put_double(at, value.real));
       break;
-    case Value::Kind::kReal: out.commit(put_double(out.reserve(kMaxFloatChars), value.real)); break;
-    case Value::Kind::kTime: out.commit(put_time(out.reserve(kMaxTimeChars), value.integer)); break;
+    }
     case Value::Kind::kText: append_text_member(out, {}, value.text); break;
     case Value::Kind::kBits: append_json_bits(*value.field, value.integer, out); break;
     case Value::Kind::kBytes: {

@@ -152,9 +152,9 @@ bool Path::show(const Target& target, std::int64_t raw, Visitor visit) {
       break;
     case Beside::kBits: value.kind = Value::Kind::kBits; break;
     case Beside::kUnit:
-      value.kind = Value::Kind::kReal;
       value.real = converted(*target.field, raw);
-      value.field = nullptr;
+      if (value.kind == Value::Kind::kReal) value.field = nullptr;  // It is no binary32 any more.
+      if (value.kind == Value::Kind::kInteger) value.kind = Value::Kind::kUnit;
       break;
   }
   return visit(value);

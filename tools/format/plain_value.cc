@@ -58,6 +58,9 @@ void append_plain_value(const Value& value, const Record& record, const JsonNode
       break;
     }
     case Value::Kind::kReal: append_real(value.real, value.field != nullptr, out); break;
+    case Value::Kind::kUnit:
+      out.commit(put_converted(out.reserve(kMaxFloatChars), *value.field, value.integer));
+      break;
     case Value::Kind::kTime: out.commit(put_time(out.reserve(kMaxTimeChars), value.integer)); break;
     case Value::Kind::kText: out.append(text::harmless(value.text)); break;
     case Value::Kind::kBits: append_bits(*value.field->mask, value.integer, out); break;

@@ -276,7 +276,12 @@ class FieldPrinter {
 
   void number(const Field& field, std::int64_t value) {
     if (style_.units && field.unit) {
-      out_.append(fmt::format("{:.6g}{}", converted(field, value), field.unit->symbol));
+      if (field.kind == Kind::kFloat) {
+        out_.append(fmt::format("{:.6g}", converted(field, value)));
+      } else {
+        out_.commit(put_converted(out_.reserve(kMaxFloatChars), field, value));
+      }
+      out_.append(field.unit->symbol);
     } else if (field.mask) {
       append_bits(*field.mask, value, out_);
     } else if (const char* name =

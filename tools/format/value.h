@@ -12,10 +12,20 @@ namespace rubric::format {
 
 /// Borrowed from the record, or valid during the visit.
 struct Value {
-  enum class Kind : std::uint8_t { kAbsent, kInteger, kReal, kText, kBytes, kTime, kBits, kNode };
+  enum class Kind : std::uint8_t {
+    kAbsent,
+    kInteger,
+    kReal,
+    kText,
+    kBytes,
+    kTime,
+    kBits,
+    kUnit,
+    kNode
+  };
   Kind kind = Kind::kAbsent;
-  std::int64_t integer = 0;               ///< kInteger, kBits; kTime: nanoseconds.
-  double real = 0;                        ///< kReal.
+  std::int64_t integer = 0;               ///< kInteger, kBits, kUnit: raw; kTime: nanoseconds.
+  double real = 0;                        ///< kReal; kUnit: converted.
   std::string_view text;                  ///< kText; beside kInteger its name, where it has one.
   Bytes bytes;                            ///< kBytes.
   const reflect::Field* field = nullptr;  ///< For a field's value: its enum and bit names.

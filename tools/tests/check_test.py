@@ -427,6 +427,19 @@ class Inputs(Folder):
             self.assertEqual([(one["requirement"], one["file"]) for one in found],
                              [("J5-SUCCESS", str(wrong))])
 
+    def test_a_log_says_which_requests_the_sink_missed(self):
+        air, log = self.folder / "air.pcapng", self.folder / "run.rtr"
+        rubric("simulate", "--loss", "0.2", "--seed", "14", "--seconds", "6", "--out-pcapng", air,
+               "--out-rtr", log)
+        text = log.read_text()
+        self.assertEqual(len(re.findall("lost am=2->1 join_request", text)), 3)
+        self.assertEqual(as_json(air, log)["findings"], [])
+        given = self.write("given.rtr", re.sub("rA +lost (am=2->1 join_request)", r"sA < rA \1",
+                                               text, count=1))
+        found = as_json(air, given)["findings"]
+        self.assertEqual([(one["requirement"], one["severity"]) for one in found],
+                         [("J9-INTERLEAVE", "inconclusive")])
+
     def test_testers_are_not_judged(self):
         self.assertEqual(as_json(WRONG_SEQ, "--tester", "2")["counts"]["fail"], 0)
 

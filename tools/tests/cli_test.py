@@ -366,18 +366,61 @@ class WideNumbers(unittest.TestCase):
         text = "big=18446744073709551615 little=9223372036854775808 below=-9223372036854775808"
         self.assertIn(f"{text} kind=9007199254740993 ", shown("decode", "--width", "300"))
         self.assertIn(" 18446744073709551615\n", shown("explain", self.RAW))
+        chosen = json.loads(shown("decode", "--format", "jsonl", "--fields", "big,below,tail"))
+        self.assertEqual({name: chosen[name] for name in ("big", "below", "tail")},
+                         {name: self.FIELDS[name] for name in ("big", "below", "tail")})
         self.assertEqual(shown("decode", "--format", "csv", "--fields", "big,tail").split()[1:],
                          ["18446744073709551615,18446744073709551614", "7"])
         wrong = self.RAW[:64] + "cc" + 16 * "f"  # `few` is there where `count` is above 200.
         self.assertIn("few is 18446744073709551615, allowed are 0 to 1000",
                       shown("decode", stdin=wrong))
 
+    def test_units_convert_all_digits(self):
+        spec = """meta: {id: scaled, endian: be}
+seq:
+  - {id: tenth, type: u8, -unit: {symbol: A, scale: 0.1}}
+  - {id: below, type: s8, -unit: {symbol: degC, scale: 0.01, offset: -40}}
+  - {id: small, type: u4, -unit: {symbol: m, scale: 0.001}}
+  - {id: many, type: u8, repeat: eos, -unit: {symbol: s, scale: 1e-9, offset: 0.5}}
+"""
+        shown = {"tenth_A": "1844674407370955161.5", "below_degC": "-92233720368547798.08",
+                 "small_m": "4294967.295", "many_s": "9223372036.354775806 0.5"}
+        raw = struct.pack(">QqIQQ", 2**64 - 1, -2**63, 2**32 - 1, 9223372035854775806, 0).hex()
+        with tempfile.NamedTemporaryFile("w", suffix=".ksy") as file:
+            file.write(spec)
+            file.flush()
+
+            def decode(*more):
+                return rubric("decode", "--spec", file.name, "--as", "scaled", *more, stdin=raw)[1]
+            text = decode("--units", "--width", "300")
+            fields = json.loads(decode("--units", "--format", "jsonl"), parse_float=str)["fields"]
+            names = ",".join(shown)
+            alone = json.loads(decode("--format", "jsonl", "--fields", names), parse_float=str)
+            self.assertEqual(decode("--format", "csv", "--fields", names).splitlines()[1],
+                             ",".join(shown.values()))
+            explained = rubric("explain", "--spec", file.name, "--as", "scaled", raw)[1]
+            for name, value in shown.items():
+                field, unit = name.split("_")
+                inner = "".join(f"{one}{unit} " for one in value.split())[:-1]
+                self.assertIn(f"{field}=[{inner}]" if " " in value else f"{field}={inner}", text)
+                wanted = value.split() if " " in value else value
+                self.assertEqual((fields[name], alone[name]), (wanted, wanted))
+                self.assertIn("" if " " in value else f" {value} {unit}\n", explained)
+
     def test_filters_compare_them_exactly(self):
         for holds, words in ((True, (
             "big==18446744073709551615", "big==0xffffffffffffffff", "big>9223372036854775807",
             "big>little", "big>kind", "below<big", "below<0", "big>-1", "little!=below",
             "little==9223372036854775808", "tail==18446744073709551614",
-            "big & 0x8000000000000000", "big>1e19")), (False, (
+            "big & 0x8000000000000000", "big>1e19", "kind>9007199254740992.5",
+            "kind<9007199254740993.5", "kind==9007199254740993.0", "kind==90071992547409930e-1",
+            "below==-9.223372036854775808e18", "below>-9223372036854775808.1",
+            "big==1.8446744073709551615e+19", "big<1e300", "count==0e99999", "count<1e-300",
+            "count>-0.5", "9007199254740992.5<kind", "little!=9223372036854775808.5")), (False, (
+                "kind==9007199254740992.5", "kind<9007199254740992.5",
+                "big>=18446744073709551615.5",
+                "below<-9223372036854775808.1", "below==-9223372036854775807.5", "count>1e-300",
+                "count==-0.1", "big==1.8446744073709551616e19",
                 "big==-1", "big<0", "big<=below", "kind==9007199254740992", "little==below",
                 "kind==9007199254740994", "little>9223372036854775808",
                 "count>9223372036854775808"))):

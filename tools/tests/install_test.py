@@ -390,7 +390,12 @@ class Install(unittest.TestCase):
 
     def test_debian_packages(self):
         packages = self.base / "packages"
-        run("cpack", "--config", f"{BUILD}/CPackConfig.cmake", "-B", packages, cwd=BUILD)
+        broken = self.base / "broken"  # Debian's package `file` is not needed.
+        broken.mkdir()
+        (broken / "file").write_text("#!/bin/sh\nexit 1\n", encoding="utf-8")
+        (broken / "file").chmod(0o755)
+        run("cpack", "--config", f"{BUILD}/CPackConfig.cmake", "-B", packages, cwd=BUILD,
+            env={**os.environ, "PATH": f"{broken}:{os.environ['PATH']}"})
         found = sorted(packages.glob("*.deb"))
         names = [run("dpkg-deb", "--field", path, "Package").strip() for path in found]
         self.assertEqual(names, ["librubric-dev", "rubric"])

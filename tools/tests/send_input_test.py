@@ -211,6 +211,21 @@ class SerialForwarder(Base):
         self.assertIn(f"rubric: {to}: the other end is not a serial forwarder's: it begins with 53 "
                       "53, not with 55 20\n", err)
 
+    def test_a_forwarder_that_serves_another(self):
+        for command in (("send", "--as", "config", "--to"), ("decode",), ("forward",)):
+            for reads in (False, True):  # What it leaves unread resets the connection.
+                with self.subTest(command), socket.create_server(("127.0.0.1", 0)) as listener:
+                    listener.settimeout(PATIENCE_S)
+                    to = f"sf@127.0.0.1:{listener.getsockname()[1]}"
+                    more = ("--port", "0") if command == ("forward",) else ()
+                    running = self.started(*command, to, *more, stdin=subprocess.PIPE)
+                    connection, _ = listener.accept()
+                    with connection:
+                        connection.recv(2, 0 if reads else socket.MSG_PEEK)
+                    said = f"rubric: {to}: the other end closed it before it began: it may serve " \
+                           "another program; 'rubric forward' shares it\n"
+                    self.assertIn(said, running.end(None)[2])
+
     def test_a_forwarder_that_goes(self):
         def serve(connection):
             connection.recv(12)

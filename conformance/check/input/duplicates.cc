@@ -137,6 +137,9 @@ class Duplicates {
       for (LoggedNode& node : run_.nodes) {
         if (node.file != log_file) continue;
         const bool base_station = node.role == machine::Role::kBaseStation;
+        if (node.hearing && node.role == machine::Role::kSink && link == Link::kRadio) {
+          node.requests = requests_given(node);
+        }
         node.hearing = node.hearing && (link == Link::kRadio) == base_station;
         node.whole = false;
       }
@@ -146,6 +149,21 @@ class Duplicates {
       dropped_[i] = !seen.node.empty() && is_frame(seen) &&
                     captured.contains({seen.place.file, run_.taps[seen.tap].link});
     }
+  }
+
+  GivenRequests requests_given(const LoggedNode& sink) const {
+    GivenRequests out;
+    Request request;
+    for (const Observation& seen : run_.seen) {
+      if (seen.node.empty() || seen.place.file != sink.file) continue;
+      out.from_us = std::min(out.from_us, seen.place.time_us);
+      out.to_us = std::max(out.to_us, seen.place.time_us);
+      if (seen.node == sink.name && seen.received && seen.frame.type == am::kJoin &&
+          parse_request(seen.frame.payload, request)) {
+        out.all.push_back({seen.place.time_us, seen.frame.src, request.seq_num});
+      }
+    }
+    return out;
   }
 
   // Counts frames that both have between `lo` and `hi`, one for one.

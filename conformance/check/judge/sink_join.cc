@@ -258,12 +258,31 @@ void SinkJoins::answered(std::uint16_t mote_am, std::uint16_t seq_num) {
   if (found != unanswered_.end() && found->second.seq_num == seq_num) found->second.open = false;
 }
 
+// Returns whether the sink's log, whose frames a capture replaced, lacks the request until it is
+// sent again.
+bool SinkJoins::missed(std::uint16_t sink, std::uint16_t mote_am,
+                       const Unanswered& unanswered) const {
+  if (sink >= context_.run.nodes.size() || !context_.run.nodes[sink].requests) return false;
+  const GivenRequests& given = *context_.run.nodes[sink].requests;
+  const std::int64_t asked_us = unanswered.request.time_us;
+  const std::int64_t skew_us = context_.options.skew_us;
+  if (asked_us < given.from_us - skew_us || asked_us > given.to_us) return false;
+  const std::int64_t period_us = context_.join_period_us(context_.slowest_mote(mote_am));
+  return std::ranges::none_of(given.all, [&](const GivenRequests::Request& one) {
+    const std::int64_t after_us = one.time_us - asked_us;
+    return one.mote_am == mote_am && one.seq_num == unanswered.seq_num && after_us > -skew_us &&
+           after_us < period_us / 2;
+  });
+}
+
 void SinkJoins::close_unanswered(std::uint16_t mote_am, Unanswered& unanswered) {
   if (!unanswered.open) return;
   unanswered.open = false;
   // If all sinks have logs, these show who received it.
-  const auto hearing = [&](const SinkWatch& sink) { return context_.device(sink.device).hearing; };
-  if (!sinks_.empty() && std::all_of(sinks_.begin(), sinks_.end(), hearing)) return;
+  const auto shows = [&](const SinkWatch& sink) {
+    return context_.device(sink.device).hearing || missed(sink.device, mote_am, unanswered);
+  };
+  if (!sinks_.empty() && std::all_of(sinks_.begin(), sinks_.end(), shows)) return;
   for (SinkWatch& sink : sinks_) {  // A sink that lists it, or is full, is right not to answer.
     const PairWatch& watch = pair(sink, mote_am);
     if (listed(sink) >= context_.profile(sink.device).members_max) return;

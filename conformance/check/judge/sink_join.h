@@ -221,6 +221,7 @@ class SinkJoins {
     std::uint16_t sink = kNobody;
   };
   void close_unanswered(std::uint16_t mote_am, Unanswered& unanswered);
+  bool missed(std::uint16_t sink, std::uint16_t mote_am, const Unanswered& unanswered) const;
   bool hears(const Device& device, const Observation& seen, bool sure) const;
 
   Context& context_;

@@ -213,9 +213,14 @@ class Parser {
     std::string digits(token_);
     std::erase(digits, '_');
     const auto value = parse_integer(digits);
-    if (!value)
-      fail(fmt::format("{} is not a number", quote(token_)),
-           "decimal, 0x or 0b digits of a 64-bit number were expected");
+    if (!value) {
+      const bool hex = digits.starts_with("0x") && digits.size() > 2;
+      const char* const all = hex ? "0123456789abcdefABCDEF" : "0123456789";
+      const bool large = digits.find_first_not_of(all, hex ? 2 : 0) == digits.npos;
+      fail(fmt::format("{} is {}", quote(token_), large ? "too large" : "not a number"),
+           large ? "at most 9007199254740991 was expected, which rules of a u8 can name"
+                 : "decimal, 0x or 0b digits were expected");
+    }
     out->value = *value;
     next();
     return out;

@@ -61,7 +61,12 @@ std::string meaning(const Field& field, std::int64_t value) {
     if (name) text = name;
   }
   if (field.mask) text = bits_text(*field.mask, value);
-  if (field.unit) text = fmt::format("{} {}", format::converted(field, value), field.unit->symbol);
+  if (field.unit) {
+    char number[format::kMaxFloatChars];
+    const char* const end = format::put_converted(number, field, value);
+    text = fmt::format("{} {}", std::string_view(number, static_cast<std::size_t>(end - number)),
+                       field.unit->symbol);
+  }
   const std::string doc = first_sentence(field.doc);
   if (doc.empty()) return text;
   return text.empty() ? doc : fmt::format("{}; {}", text, doc);

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "codec/reflect/fault_text.h"
+#include "tools/format/json_nodes.h"
 #include "tools/format/record.h"
 
 namespace rubric::stats {
@@ -71,7 +71,12 @@ std::int64_t add(Flow& flow, const Frame& frame, const Place& place, bool repeat
 void append_number(const Node& node, std::string& out) {
   const char* name =
       node.field->enumeration ? reflect::enum_name(*node.field->enumeration, node.value) : nullptr;
-  out += name ? std::string(name) : reflect::integer_text(*node.field, node.value);
+  if (name) {
+    out += name;
+  } else {
+    char digits[format::kMaxIntChars];
+    out.append(digits, format::put_integer(digits, *node.field, node.value));
+  }
 }
 
 // An address may be a number or a structure of some.

@@ -1,5 +1,5 @@
-# expect: 14:18: '99999999999999999999' is not a number; decimal, 0x or 0b digits of a 64-bit number were
-#   expected
+# expect: 14:18: '99999999999999999999' is too large; at most 9007199254740991 was expected, which rules
+#   of a u8 can name
 meta:
   id: bad
   endian: be
