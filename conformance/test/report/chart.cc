@@ -204,7 +204,7 @@ class Chart {
     row.number = std::to_string(line.time.from);
     row.detail = key_text(line.message, report::kSvgLabelMax);
     row.full = full_text(line);
-    row.way = way_of(line, one_, line.am.has_value());
+    row.way = way_of(line, one_, static_cast<bool>(line.am));
     if (row.way == SequenceRow::Way::kRadio && row.from == kNoColumn) {
       row.detail += " (from " + trace::value_text(line.am->source) + ")";
     } else if (row.way == SequenceRow::Way::kRadio && row.to.empty()) {
@@ -383,7 +383,7 @@ SequenceRow Stage::row(const Line& line) const {
   SequenceRow row{.label = short_text(line.message)};
   const std::size_t node = column(line.node);
   const bool given = line.op == Op::kGiven;
-  const bool frame = line.am.has_value();
+  const bool frame{line.am};
   std::vector<std::size_t> peers;
   if (frame) {
     for (const std::size_t i : peers_of(nodes_, line)) peers.push_back(column(nodes_[i].name));
