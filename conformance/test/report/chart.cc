@@ -341,7 +341,7 @@ class Chart {
 }  // namespace
 
 MachineRun run_on_machine(const SuiteCase& one) {
-  MachineRun out{.run = one.blank};
+  MachineRun out{.run = one.blank()};
   out.run.result =
       runner::run_case(one.file->file, *one.one,
                        [&](const trace::NodeHeader& node) -> std::unique_ptr<runner::Target> {

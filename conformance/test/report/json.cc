@@ -167,11 +167,12 @@ std::string json_report(const SuiteRun& run) {
 std::string json_list(const std::vector<SuiteCase>& cases) {
   Json list = Json::array();
   for (const SuiteCase& one : cases) {
-    list.push_back({{"name", one.blank.name},
-                    {"file", one.blank.file},
-                    {"comment", one.blank.comment},
-                    {"roles", roles(one.blank.roles)},
-                    {"rules", one.rules}});
+    const CaseRun blank = one.blank();
+    list.push_back({{"name", blank.name},
+                    {"file", blank.file},
+                    {"comment", blank.comment},
+                    {"roles", roles(blank.roles)},
+                    {"rules", one.rules()}});
   }
   const Json out = {{"schema", kListSchema}, {"cases", std::move(list)}};
   return out.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -55,7 +55,7 @@ TEST(Run, TheMachinePassesAllInOrderOnAnyNumberOfJobs) {
     ASSERT_EQ(run.cases.size(), own().all().size());
     ASSERT_EQ(told.size(), run.cases.size());
     for (std::size_t i = 0; i < told.size(); ++i) {
-      EXPECT_EQ(told[i], own().all()[i].blank.name);
+      EXPECT_EQ(told[i], own().all()[i].one->name);
       EXPECT_EQ(run.cases[i].name, told[i]);
       EXPECT_EQ(run.cases[i].result.verdict, CaseVerdict::kPass);
       EXPECT_FALSE(run.cases[i].result.log.lines().empty());
