@@ -322,8 +322,8 @@ Match compare(const Line& line, const Concrete& seen, const Bindings& bindings) 
   return match_line(line, seen, bindings, nullptr);
 }
 
-bool may_match(const Message& pattern, const Concrete& seen) {
-  return pattern.name == "*" || pattern.name == seen.name || pattern.name == kFrameName;
+bool may_match(const Message& pattern, std::string_view seen) {
+  return pattern.name == "*" || pattern.name == seen || pattern.name == kFrameName;
 }
 
 Match match(const Message& pattern, const Concrete& seen, Bindings& bindings) {

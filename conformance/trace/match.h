@@ -37,8 +37,9 @@ struct Match {
 Match match(const Line& line, const Concrete& seen, Bindings& bindings);
 /// The same, and binds nothing.
 Match compare(const Line& line, const Concrete& seen, const Bindings& bindings);
-/// Returns whether a message that the pattern names can be this one: compare() takes far longer.
-bool may_match(const Message& pattern, const Concrete& seen);
+/// Returns whether a message that the pattern names can be one of this name: compare() takes far
+/// longer.
+bool may_match(const Message& pattern, std::string_view seen);
 /// Compares the message alone.
 Match match(const Message& pattern, const Concrete& seen, Bindings& bindings);
 /// Opens a message for faults of a link, which check only the fields that they name.

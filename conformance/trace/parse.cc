@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <stdexcept>
 #include <vector>
 
 #include "codec/text/text.h"
@@ -173,6 +174,13 @@ std::size_t find_foreign(std::string_view text) {
   return std::string_view::npos;
 }
 
+std::string_view take_line(std::string_view& text) {
+  const std::size_t end = text.find('\n');
+  const std::string_view line = text.substr(0, end);
+  text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+  return line;
+}
+
 class Parser {
  public:
   /// Lines are told to `listener`, if there is one; else they are kept.
@@ -193,13 +201,6 @@ class Parser {
   }
 
  private:
-  static std::string_view take_line(std::string_view& text) {
-    const std::size_t end = text.find('\n');
-    const std::string_view line = text.substr(0, end);
-    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-    return line;
-  }
-
   static bool is_case(std::string_view line) {
     line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
     return line.starts_with("case") &&
@@ -362,6 +363,19 @@ Parsed each_line(std::string_view text, std::string_view file_name, const TakeLi
   });
   sort_diagnostics(parsed);
   return parsed;
+}
+
+Case parse_lines(std::string_view text) {
+  Case out;
+  try {
+    while (!text.empty()) {
+      Scanner in(take_line(text), static_cast<std::uint32_t>(out.items.size() + 1));
+      out.add(parse_line(in));
+    }
+  } catch (const LineError& error) {
+    throw std::logic_error(error.text);
+  }
+  return out;
 }
 
 std::string parse_message(std::string_view text, Message& out) {

@@ -38,6 +38,9 @@ Parsed parse(std::string_view text, std::string_view file_name);
 /// Checks the grammar alone: not names, values and the order of lines.
 Parsed parse_syntax(std::string_view text, std::string_view file_name);
 
+/// Reads lines of a case as print() writes them. Throws std::logic_error for anything else.
+Case parse_lines(std::string_view text);
+
 /// Reads a message alone, "join_reply(seq_num=3 ...)"; returns what is wrong, or nothing.
 std::string parse_message(std::string_view text, Message& out);
 

@@ -226,7 +226,7 @@ void parse_bytes(Scanner& in, Line& line) {
   in.advance(1);
   const std::string_view text = trimmed(in.until([](char c) { return c == ';'; }));
   // Blanks come between bytes, not within one.
-  line.bytes.emplace();
+  line.bytes = std::string();
   for (std::size_t at = 0; at < text.size();) {
     if (text[at] == ' ' || text[at] == '\t') {
       ++at;

@@ -184,7 +184,7 @@ std::uint32_t ticks_per_second(Tick tick) {
   return tick == Tick::kBinaryMs ? 1024 : tick == Tick::kMs ? 1000 : 1000000;
 }
 
-std::vector<const Line*> Case::lines() const {
+std::vector<const Line*> Case::lines() const& {
   std::vector<const Line*> found;
   for (const Item& item : items) {
     if (const auto* line = item.as<Line>()) found.push_back(line);

@@ -137,6 +137,31 @@ bool parse_packet(std::string_view bytes, AmFrame& out);
 
 // Lines.
 
+/// A value that is mostly absent, and then takes no more than a pointer: a file may have any number
+/// of lines.
+template <class T>
+class Rare {
+ public:
+  Rare() = default;
+  Rare(T value) : value_(std::make_unique<T>(std::move(value))) {}
+  Rare(const Rare& other) : value_(other ? std::make_unique<T>(*other) : nullptr) {}
+  Rare(Rare&&) = default;
+  Rare& operator=(Rare other) {
+    value_ = std::move(other.value_);
+    return *this;
+  }
+  void reset() { value_.reset(); }
+  explicit operator bool() const { return value_ != nullptr; }
+  T& operator*() { return *value_; }
+  const T& operator*() const { return *value_; }
+  T* operator->() { return value_.get(); }
+  const T* operator->() const { return value_.get(); }
+  friend bool operator==(const Rare& a, const Rare& b) { return a && b ? *a == *b : !a && !b; }
+
+ private:
+  std::unique_ptr<T> value_;
+};
+
 /// The role of a line's message.
 enum class Op : std::uint8_t {
   kGiven,    ///< `<`: given to the node.
@@ -187,11 +212,11 @@ struct Line {
   std::string node;  ///< `*`: any node; empty for the faults of a link.
   Op op = Op::kGiven;
   std::string link;  ///< rA, serA, peis, app, power; `*`: any.
-  std::optional<AmAddresses> am;
+  Rare<AmAddresses> am;
   Message message;
   std::vector<std::string> requirements;  ///< "J4-SEQ", or "J4" for the family.
   /// The exact serial forwarder packet. In a stimulus it is what the node gets.
-  std::optional<std::string> bytes;
+  Rare<std::string> bytes;
   std::string comment;
   Place place;
   friend bool operator==(const Line&, const Line&) = default;
@@ -338,7 +363,8 @@ struct Case {
   explicit Case(std::string_view case_name) : name(case_name) {}
   void add(Line line) { items.emplace_back(std::move(line)); }
   /// Returns the lines in order; pointers into `items`.
-  std::vector<const Line*> lines() const;
+  std::vector<const Line*> lines() const&;
+  std::vector<const Line*> lines() const&& = delete;
   friend bool operator==(const Case&, const Case&) = default;
 };
 

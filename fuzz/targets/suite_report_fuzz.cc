@@ -54,7 +54,7 @@ suite::SuiteRun run_of(const suite::Cases& cases, std::string_view input) {
   for (const suite::SuiteCase& known : cases.all()) {
     if (one.cases.size() == kCasesMax) break;
     suite::CaseRun run = suite::run_on_machine(known).run;
-    run.comment = known.blank.comment;
+    run.comment = known.blank().comment;
     run.stderr_text = word();
     run.expected_reason = word();
     run.expectation = static_cast<suite::Expectation>(input.size() / 2 % 4);

@@ -72,7 +72,7 @@ std::vector<const suite::SuiteCase*> chosen(const std::string& what,
   std::vector<const suite::SuiteCase*> out;
   std::vector<std::string> names;
   for (const suite::SuiteCase& one : cases.all()) {
-    names.push_back(one.blank.name);
+    names.push_back(one.one->name);
     const bool meant = is_file ? name.empty() || name == names.back() : what == names.back();
     if (meant) out.push_back(&one);
   }
@@ -139,7 +139,7 @@ void run_chart(const ChartOptions& options) {
   const bool picture = options.format == "svg";
   if (picture && all.size() > 1) {
     throw cli::UsageError(fmt::format("{} has {} cases; name the one to draw: {}:{}", options.what,
-                                      all.size(), options.what, all.front()->blank.name));
+                                      all.size(), options.what, all.front()->one->name));
   }
   const std::size_t width = cli::columns(options.width, 1);
   std::string out;

@@ -156,12 +156,12 @@ std::string list_text(const std::vector<suite::SuiteCase>& cases) {
   std::string out;
   for (const suite::SuiteCase& one : cases) {
     std::string roles;
-    for (const machine::Role role : one.blank.roles) {
+    for (const machine::Role role : one.roles()) {
       if (!roles.empty()) roles += '+';
       roles += trace::role_text(static_cast<trace::Role>(role));
     }
-    std::string line = fmt::format("{:<40} {:<12}", one.blank.name, roles);
-    for (const std::string& rule : one.rules) line += ' ' + rule;
+    std::string line = fmt::format("{:<40} {:<12}", one.one->name, roles);
+    for (const std::string& rule : one.rules()) line += ' ' + rule;
     line.erase(line.find_last_not_of(' ') + 1);
     out += line + '\n';
   }

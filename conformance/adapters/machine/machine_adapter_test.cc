@@ -5,19 +5,9 @@
 #include "conformance/test/runner/case_files.h"
 #include "conformance/test/runner/run_case.h"
 #include "conformance/test/targets/attachment.h"
-#include "conformance/trace/print.h"
 
 namespace rubric::targets {
 namespace {
-
-std::string log_of(const runner::CaseResult& result) {
-  std::string out;
-  for (const trace::Line* line : result.log.lines()) {
-    trace::put_line(*line, out);
-    out += '\n';
-  }
-  return out;
-}
 
 TEST(MachineAdapter, DoesWhatTheMachineDoesInEveryGoldenTrace) {
   const auto here = attach("machine", {});
@@ -33,7 +23,7 @@ TEST(MachineAdapter, DoesWhatTheMachineDoesInEveryGoldenTrace) {
       const runner::CaseResult result = run(*there);
       EXPECT_EQ(result.verdict, runner::CaseVerdict::kPass)
           << runner::explain(result, file.file_name) << result.reason;
-      EXPECT_EQ(log_of(result), log_of(expected)) << one.name;
+      EXPECT_EQ(result.log.text(), expected.log.text()) << one.name;
       ++cases;
     }
   }

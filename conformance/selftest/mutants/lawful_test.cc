@@ -28,7 +28,7 @@ std::vector<LawfulVariant> all_variants() {
 // Each one differs from the machine somewhere, as it should.
 TEST(Lawful, NoGoldenTraceFails) {
   const Golden golden("conformance/cases");
-  std::vector<trace::Case> machine;
+  std::vector<runner::CaseLog> machine;
   for (const CaseRef& ref : golden.cases()) {
     machine.push_back(run(ref, [] { return std::make_unique<runner::Machine>(); }).log);
   }

@@ -131,7 +131,7 @@ TEST(Mutants, TheWholeSuiteCallsFewRulesBroken) {
     if (!named().found[i].killed) continue;
     suite::ImplementationRun all;
     for (const suite::SuiteCase& each : cases.all()) {
-      suite::CaseRun& one = all.cases.emplace_back(each.blank);
+      suite::CaseRun& one = all.cases.emplace_back(each.blank());
       one.profile = "paper";
       one.result = run({each.file, each.one}, mutant.factory());
       if (one.result.failures.empty()) continue;

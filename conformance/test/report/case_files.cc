@@ -45,7 +45,8 @@ class Capture {
   }
 
   std::string run() {
-    const std::vector<const Line*> lines = one_.result.log.lines();
+    const trace::Case log = one_.result.log.read();
+    const std::vector<const Line*> lines = log.lines();
     const std::vector<std::size_t> before = first_seen(lines);
     for (std::size_t i = 0; i < lines.size(); ++i) {
       if (before[i] == kNoLine && lines[i]->bytes) add(*lines[i]);
@@ -112,7 +113,7 @@ std::string case_rtr(const CaseRun& one) {
   }
   for (const trace::LinkHeader& link : one.links) file.header({link, {}, {}});
   if (one.seed != 0) file.header({trace::SeedHeader{one.seed}, {}, {}});
-  file.cases.push_back(one.result.log);
+  file.cases.push_back(one.result.log.read());
   file.cases.back().name = one.name;
   for (const trace::NodeHeader& node : one.nodes) {
     if (!node.iut || !one.whole) continue;

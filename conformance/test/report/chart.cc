@@ -152,7 +152,11 @@ void add_note(std::string& note, const std::string& more) {
 class Chart {
  public:
   Chart(const CaseRun& one, const Reactions& reactions, Stage::Apps apps = Stage::Apps::kAlone)
-      : one_(one), reactions_(reactions), stage_(one, apps), lines_(one.result.log.lines()) {}
+      : one_(one),
+        reactions_(reactions),
+        stage_(one, apps),
+        log_(one.result.log.read()),
+        lines_(log_.lines()) {}
 
   report::Sequence take(bool with_failures = false) {
     const std::vector<std::size_t> before = first_seen(lines_, true);
@@ -204,7 +208,7 @@ class Chart {
     row.number = std::to_string(line.time.from);
     row.detail = key_text(line.message, report::kSvgLabelMax);
     row.full = full_text(line);
-    row.way = way_of(line, one_, line.am.has_value());
+    row.way = way_of(line, one_, static_cast<bool>(line.am));
     if (row.way == SequenceRow::Way::kRadio && row.from == kNoColumn) {
       row.detail += " (from " + trace::value_text(line.am->source) + ")";
     } else if (row.way == SequenceRow::Way::kRadio && row.to.empty()) {
@@ -330,6 +334,7 @@ class Chart {
   const CaseRun& one_;
   const Reactions& reactions_;
   const Stage stage_;
+  const trace::Case log_;
   const std::vector<const Line*> lines_;
   std::vector<const Reaction*> reaction_of_;
   std::map<std::string, std::set<std::size_t>, std::less<>> on_link_;
@@ -341,7 +346,7 @@ class Chart {
 }  // namespace
 
 MachineRun run_on_machine(const SuiteCase& one) {
-  MachineRun out{.run = one.blank};
+  MachineRun out{.run = one.blank()};
   out.run.result =
       runner::run_case(one.file->file, *one.one,
                        [&](const trace::NodeHeader& node) -> std::unique_ptr<runner::Target> {
@@ -383,7 +388,7 @@ SequenceRow Stage::row(const Line& line) const {
   SequenceRow row{.label = short_text(line.message)};
   const std::size_t node = column(line.node);
   const bool given = line.op == Op::kGiven;
-  const bool frame = line.am.has_value();
+  const bool frame{line.am};
   std::vector<std::size_t> peers;
   if (frame) {
     for (const std::size_t i : peers_of(nodes_, line)) peers.push_back(column(nodes_[i].name));
@@ -447,7 +452,8 @@ std::optional<report::Sequence> join_chart(const CaseRun& one) {
   constexpr std::int64_t kNoticeTicks = 600;  // A sink reports the mote so long after its ack.
   static const std::set<std::string> kWords = {"join",     "join_request", "join_reply",
                                                "ack_join", "joined",       "mote_joined"};
-  const std::vector<const Line*> lines = one.result.log.lines();
+  const trace::Case log = one.result.log.read();
+  const std::vector<const Line*> lines = log.lines();
   const auto ack = std::find_if(lines.begin(), lines.end(), [](const Line* line) {
     return line->message.name == "ack_join" && line->op == Op::kEmits && line->am;
   });
@@ -463,7 +469,7 @@ std::optional<report::Sequence> join_chart(const CaseRun& one) {
   }
   if (!asked || party.empty()) return std::nullopt;
   CaseRun figure = one;
-  figure.result.log.items.clear();
+  figure.result.log = {};
   for (auto line = lines.begin(); line != lines.end(); ++line) {
     const std::string& word = (*line)->message.name;
     if ((*line)->time.from > (*ack)->time.from + kNoticeTicks) break;

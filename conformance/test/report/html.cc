@@ -46,7 +46,7 @@ std::vector<CaseLinks> write_cases(const ImplementationRun& run, ReportFolder& f
   std::vector<CaseLinks> out;
   for (const CaseRun& one : run.cases) {
     CaseLinks& links = out.emplace_back();
-    if (one.result.log.lines().empty()) continue;  // Nothing was given to it.
+    if (one.result.log.empty()) continue;  // Nothing was given to it.
     const std::string name = names.unique(case_name(one));
     links.rtr = place + name + ".rtr";
     folder.write(links.rtr, case_rtr(one));

@@ -156,7 +156,8 @@ class Data {
 
   void add_to(Json& out, std::size_t i, std::size_t index) {
     const CaseRun& one = run_.implementations[i].cases[index];
-    const std::vector<const Line*> lines = one.result.log.lines();
+    const trace::Case its_log = one.result.log.read();
+    const std::vector<const Line*> lines = its_log.lines();
     for (std::size_t k = 0; k < one.result.failures.size(); ++k) {
       add_to(out["failures"][k], one.result.failures[k], lines);
     }

@@ -57,7 +57,8 @@ TEST(FrameView, EachByteOfEachFrameHasItsField) {
   std::size_t frames = 0;
   for (const CaseRun& each : whole().implementations[0].cases) {
     trace::Scope scope{.nodes = each.nodes, .links = each.links};
-    for (const trace::Line* line : each.result.log.lines()) {
+    const trace::Case log = each.result.log.read();
+    for (const trace::Line* line : log.lines()) {
       if (!line->bytes) continue;
       const FrameView view = view_frame(*line->bytes, scope.link(line->link).value());
       EXPECT_EQ(view.hex.size(), 2 * line->bytes->size());
@@ -99,7 +100,8 @@ TEST(FrameView, WhatIsNoPacketIsBytes) {
 
 TEST(LogLines, AFrameThatTwoNodesShowIsOne) {
   const CaseRun& timeline = one("timeline");
-  const std::vector<const trace::Line*> lines = timeline.result.log.lines();
+  const trace::Case log = timeline.result.log.read();
+  const std::vector<const trace::Line*> lines = log.lines();
   const std::vector<std::size_t> before = first_seen(lines);
   std::size_t heard = 0;
   for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -143,7 +145,8 @@ TEST(LogLines, AFrameIsGivenToANodeOnce) {
 TEST(LogLines, PeersAreTheNodesThatAreMeant) {
   const CaseRun& accept = one("j4.accept");  // m5, sA of island 11 and sB of island 12.
   std::map<std::string, std::vector<std::size_t>> peers;
-  for (const trace::Line* line : accept.result.log.lines()) {
+  const trace::Case log = accept.result.log.read();
+  for (const trace::Line* line : log.lines()) {
     peers[line->message.name] = peers_of(accept.nodes, *line);
   }
   EXPECT_THAT(peers["join"], ElementsAre());
@@ -158,7 +161,8 @@ TEST(CaseFiles, LogsAreReadAgain) {
     ASSERT_EQ(parsed.file.cases.size(), 1u);
     const trace::Case& read = parsed.file.cases[0];
     EXPECT_EQ(read.name, each.name);
-    const auto lines = each.result.log.lines();
+    const trace::Case log = each.result.log.read();
+    const auto lines = log.lines();
     const auto again = read.lines();
     const auto iuts = std::ranges::count_if(each.nodes, &trace::NodeHeader::iut);
     ASSERT_EQ(again.size(), lines.size() + iuts);  // Each ends with a line of its own.
@@ -205,7 +209,8 @@ TEST(CaseFiles, CapturesHaveEachFrameOnce) {
   std::size_t radio = 0;
   std::size_t serial = 0;
   std::int64_t last = 0;
-  for (const trace::Line* line : one("timeline").result.log.lines()) {
+  const trace::Case log = one("timeline").result.log.read();
+  for (const trace::Line* line : log.lines()) {
     if (line->op != trace::Op::kEmits || !line->bytes) continue;
     if (line->link == "rA") ++radio;
     if (line->link == "serA") ++serial;
@@ -218,7 +223,7 @@ TEST(CaseFiles, CapturesHaveEachFrameOnce) {
 
 TEST(CaseFiles, NoCaptureWithoutFramesOrOfPeisAlone) {
   CaseRun silent = one("j4.accept");
-  silent.result.log.items.clear();
+  silent.result.log = {};
   EXPECT_EQ(case_pcapng(silent), "");
   for (const CaseRun& each : whole().implementations[0].cases) {
     const std::string capture = case_pcapng(each);
@@ -341,7 +346,8 @@ TEST(HtmlData, KnowsTheEarlierRunAndWhatBrokeARule) {
   out.cases = {one("j4.accept")};
   CaseRun& broken = out.cases[0];
   broken.result.verdict = runner::CaseVerdict::kFail;
-  const std::vector<const trace::Line*> lines = broken.result.log.lines();
+  const trace::Case log = broken.result.log.read();
+  const std::vector<const trace::Line*> lines = log.lines();
   std::size_t at = 0;
   while (lines[at]->message.name != "ack_join") ++at;
   runner::Failure failure{.place = {14, 1},

@@ -4,10 +4,10 @@
 
 #include <map>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <stdexcept>
 
 #include "conformance/test/report/words.h"
-#include "conformance/trace/print.h"
 #include "conformance/trace/trace.h"
 
 namespace rubric::suite {
@@ -65,7 +65,8 @@ Json implementation(const ImplementationRun& run) {
   for (const CaseRun& one : run.cases) {
     Json& added = out["cases"].emplace_back(case_json(one));
     added["log"] = Json::array();
-    for (const trace::Line* line : one.result.log.lines()) added["log"] += trace::print(*line);
+    std::istringstream log(one.result.log.text());
+    for (std::string line; std::getline(log, line);) added["log"] += line;
   }
   for (const RequirementSummary& one : by_requirement(run)) {
     out["requirements"].push_back(requirement(one));
@@ -167,11 +168,12 @@ std::string json_report(const SuiteRun& run) {
 std::string json_list(const std::vector<SuiteCase>& cases) {
   Json list = Json::array();
   for (const SuiteCase& one : cases) {
-    list.push_back({{"name", one.blank.name},
-                    {"file", one.blank.file},
-                    {"comment", one.blank.comment},
-                    {"roles", roles(one.blank.roles)},
-                    {"rules", one.rules}});
+    const CaseRun blank = one.blank();
+    list.push_back({{"name", blank.name},
+                    {"file", blank.file},
+                    {"comment", blank.comment},
+                    {"roles", roles(blank.roles)},
+                    {"rules", one.rules()}});
   }
   const Json out = {{"schema", kListSchema}, {"cases", std::move(list)}};
   return out.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";

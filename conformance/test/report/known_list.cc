@@ -146,10 +146,10 @@ class KnownList {
   std::map<std::tuple<std::string, std::string, std::string>, std::vector<std::string>> undecided_;
 };
 
-bool is_given_call(const SuiteCase& one, const trace::Line& line) {
+bool is_given_call(const std::vector<trace::NodeHeader>& nodes, const trace::Line& line) {
   const trace::Shape* shape = trace::Schema::get().find(line.message.name);
   const bool under_test = std::any_of(
-      one.blank.nodes.begin(), one.blank.nodes.end(),
+      nodes.begin(), nodes.end(),
       [&](const trace::NodeHeader& node) { return node.iut && node.name == line.node; });
   return under_test && line.op == trace::Op::kGiven && shape && shape->app &&
          shape->app->what == trace::AppWhat::kCall && line.message.name != "get_clock";
@@ -164,12 +164,13 @@ std::string known_list(const SuiteRun& run, const report::KnownFailures& known) 
 std::string list_to_begin_with(const Cases& cases, machine::Role role) {
   std::map<std::string, std::vector<std::string>> by_call;
   for (const SuiteCase& one : cases.all()) {
-    if (one.blank.roles != std::vector{role}) continue;
+    if (one.roles() != std::vector{role}) continue;
+    const std::vector<trace::NodeHeader> nodes = one.blank().nodes;
     const std::vector<const trace::Line*> lines = one.one->lines();
     const auto call = std::find_if(lines.begin(), lines.end(), [&](const trace::Line* line) {
-      return is_given_call(one, *line);
+      return is_given_call(nodes, *line);
     });
-    if (call != lines.end()) by_call[(*call)->message.name].push_back(one.blank.name);
+    if (call != lines.end()) by_call[(*call)->message.name].push_back(one.one->name);
   }
   std::string out =
       "# What this adapter cannot do yet. Write it again as you go on, so that it shrinks:\n"

@@ -49,13 +49,15 @@ bool is_ack(const trace::Message& message) {
 // Returns what the output is in one order with: what came by its link, but for what a timer of its
 // own caused. Which of two messages is told first that no ack came is free, as their timers may be
 // late (decision 110), and so is the order of the channels within a tick (decision 120).
-std::string order_of(const std::string& link, const trace::Message& message) {
+std::string order_of(std::string_view link, const trace::Message& message) {
   const auto is = [&](const char* path, std::string_view text) {
     const trace::Value* const value = message.find(path);
     return value != nullptr && value->text == text;
   };
   if (message.name == "ack_received" && is("result", "fail")) return trace::print(message);
-  if (message.name != "syn_data" || is("status", "unknown_channel")) return link;
+  if (message.name != "syn_data" || is("status", "unknown_channel")) {
+    return std::string(link);
+  }
   trace::Message of_channel = message;
   std::erase_if(of_channel.fields, [](const auto& field) { return field.path == "status"; });
   return trace::print(of_channel);
@@ -67,6 +69,12 @@ bool is_foreign(const Output& output) {
   const trace::Schema& schema = trace::Schema::get();
   return output.is_frame && !schema.payload_type(LinkKind::kRadio, output.frame.type) &&
          !schema.payload_type(LinkKind::kSerial, output.frame.type);
+}
+
+LoggedLine logged(Ticks time, const trace::Line& line) {
+  std::string text = trace::print(line);
+  text.shrink_to_fit();
+  return {time, std::move(text)};
 }
 
 }  // namespace
@@ -108,8 +116,14 @@ NodeLog::NodeLog(const trace::Scope& scope, const trace::Case& one, const trace:
   }
 }
 
-std::string NodeLog::link_name(const Output& output) const {
-  return output.is_frame ? link_names_.at(output.frame.link) : "app";
+std::string_view NodeLog::link_name(const Output& output) const {
+  return output.is_frame ? std::string_view(link_names_.at(output.frame.link)) : "app";
+}
+
+const trace::Concrete& NodeLog::message_at(std::size_t place) const {
+  if (place_ != place) message_ = message_of(target_->outputs()[place]);
+  place_ = place;
+  return message_;
 }
 
 Ticks NodeLog::run_until(Ticks time) {
@@ -128,22 +142,22 @@ void NodeLog::read_outputs() {
   for (std::size_t i = seen_.size(); i < outputs.size(); ++i) {
     const Output& output = outputs[i];
     in_order_ = in_order_ && (i == 0 || outputs[i - 1].time <= output.time);
-    trace::Concrete message = message_of(output);
+    const trace::Concrete& message = message_at(i);
     const auto order = orders_.emplace(order_of(link_name(output), message.message), next_.size());
     if (order.second) next_.push_back(0);
-    seen_.push_back(
-        {std::move(message), link_name(output), order.first->second, is_foreign(output)});
+    seen_.push_back({message.message.name, link_name(output), message.size_rule, message.excess,
+                     order.first->second, is_foreign(output)});
     const Seen& seen = seen_.back();
-    (seen.foreign ? foreign_links_ : links_).insert(seen.link);
+    (seen.foreign ? foreign_links_ : links_).emplace(seen.link);
     trace::Line line =
         output.is_frame
             ? trace::frame_line(output.time, name_, trace::Op::kEmits, seen.link, kind_of(output),
-                                *seen.message.frame)
-            : trace::app_line(output.time, name_, trace::Op::kEmits, "app", seen.message.message);
+                                *message.frame)
+            : trace::app_line(output.time, name_, trace::Op::kEmits, "app", message.message);
     if (output.requirement != ReqId::kNone) {
       line.requirements.emplace_back(trace::requirement_text(output.requirement));
     }
-    log_.push_back({output.time, std::move(line)});
+    log_.push_back(logged(output.time, line));
   }
 }
 
@@ -155,7 +169,8 @@ Window NodeLog::give(const trace::Line& line, Ticks now, const trace::Scope& sco
   const bool is_state = shape && shape->app && shape->app->what != trace::AppWhat::kFrame;
   if (!is_state && link) {
     const trace::AmFrame frame = trace::frame_of(line, scope, bindings);
-    log_.push_back({now, trace::frame_line(now, name_, trace::Op::kGiven, line.link, kind, frame)});
+    trace::Line its = trace::frame_line(now, name_, trace::Op::kGiven, line.link, kind, frame);
+    log_.push_back(logged(now, its));
     const machine::Frame heard{*link,
                                frame.dest,
                                frame.src,
@@ -163,30 +178,31 @@ Window NodeLog::give(const trace::Line& line, Ticks now, const trace::Scope& sco
                                Bytes(frame.payload.data(), frame.payload.size()),
                                Bytes(frame.packet.data(), frame.packet.size())};
     target_->give(now, machine::Heard{heard});
-    return given(now);
+    return given(now, std::move(its));
   }
   const trace::Concrete message = trace::concrete(line.message, bindings);
-  log_.push_back({now, trace::app_line(now, name_, trace::Op::kGiven, line.link, message.message)});
+  trace::Line its = trace::app_line(now, name_, trace::Op::kGiven, line.link, message.message);
+  log_.push_back(logged(now, its));
   if (shape && shape->app && shape->app->what == trace::AppWhat::kCall) {
     target_->call(now, message);
-    return given(now);
+    return given(now, std::move(its));
   }
   if (const auto state = events::to_state(message, kind)) {
     if (std::holds_alternative<machine::SendDone>(*state)) {
       target_->hold_link_acks(--link_acks_to_come > 0);
     }
     target_->give(now, *state);
-    return given(now);
+    return given(now, std::move(its));
   }
   throw trace::TraceError(line.place, line.message.name + " cannot be given to a node");
 }
 
-// Corrects the time of the last line of the log, which was given.
-Window NodeLog::given(Ticks now) {
-  LoggedLine& logged = log_.back();
+Window NodeLog::given(Ticks now, trace::Line line) {
   const Window given = target_->given().value_or(Window{now, now});
-  logged.time = given.from;
-  logged.line.as<trace::Line>()->time = trace::Time::at(given.from);
+  if (given.from != now) {
+    line.time = trace::Time::at(given.from);
+    log_.back() = logged(given.from, line);
+  }
   read_outputs();
   return given;
 }
@@ -221,7 +237,7 @@ const Output* NodeLog::first(const trace::Line& line, const Window& window, Span
   for (; indexed_ < seen_.size(); ++indexed_) {
     const Seen& seen = seen_[indexed_];
     if (seen.taken) continue;
-    index_.add(static_cast<std::uint32_t>(indexed_), seen.message, seen.link, seen.foreign);
+    index_.add(static_cast<std::uint32_t>(indexed_), message_at(indexed_), seen.link, seen.foreign);
   }
   const OutputIndex::Places places = find(index_);
   auto at = std::ranges::lower_bound(places, span.begin);
@@ -251,9 +267,8 @@ const Output* NodeLog::matching(const trace::Line& line, const Window& window,
       line, window, span, [&](const OutputIndex& index) { return index.like(line, bindings); },
       [&](std::size_t i) {
         const Seen& seen = seen_[i];
-        return (!in_turn || i >= next_[seen.order]) &&
-               trace::may_match(line.message, seen.message) &&
-               trace::compare(line, seen.message, bindings);
+        return (!in_turn || i >= next_[seen.order]) && trace::may_match(line.message, seen.name) &&
+               trace::compare(line, message_at(i), bindings);
       });
   if (output != nullptr) span.end = place_of(*output);
   if (none->begin < none->end && span.begin <= none->end && none->begin <= span.end) {
@@ -268,7 +283,7 @@ void NodeLog::take(const Output& output, const trace::Line& line) {
   Seen& seen = seen_[place];
   seen.taken = &line;
   if (place >= indexed_) return;
-  index_.remove(static_cast<std::uint32_t>(place), seen.message, seen.link, seen.foreign);
+  index_.remove(static_cast<std::uint32_t>(place), message_at(place), seen.link, seen.foreign);
 }
 
 const Output* NodeLog::take(const trace::Line& line, const Window& window,
@@ -276,7 +291,7 @@ const Output* NodeLog::take(const trace::Line& line, const Window& window,
   const Output* const output = matching(line, window, bindings, true);
   if (output == nullptr) return nullptr;
   const Seen& seen = seen_[place_of(*output)];
-  trace::match(line, seen.message, bindings);
+  trace::match(line, message_at(place_of(*output)), bindings);
   take(*output, line);
   next_[seen.order] = place_of(*output) + 1;
   return output;
@@ -310,16 +325,15 @@ NearestMiss NodeLog::nearest_miss(const trace::Line& line, const Window& window,
     std::size_t best = std::numeric_limits<std::size_t>::max();
     std::size_t looks = 0;
     const auto differ = [&](std::size_t i) {
-      const trace::Concrete& message = seen_[i].message;
-      if (message.message.name != line.message.name) return false;
-      const trace::Match match = trace::compare(line, message, bindings);
+      if (seen_[i].name != line.message.name) return false;
+      const trace::Match match = trace::compare(line, message_at(i), bindings);
       if (match.distance() < best) {
         best = match.distance();
         const Output& one = target_->outputs()[i];
         miss = {fmt::format("nearest, at {}: {}: {}", one.time, text_of(one), match.text()),
                 {"differs"},
                 one.time};
-        if (is_ack(message.message)) miss.evidence.insert("ack");
+        if (is_ack(message_at(i).message)) miss.evidence.insert("ack");
         for (const trace::Difference& each : match.differences) {
           miss.evidence.insert(each.path.substr(0, each.path.find_first_of(". ")));
         }
@@ -342,18 +356,17 @@ NearestMiss NodeLog::nearest_miss(const trace::Line& line, const Window& window,
 }
 
 Evidence NodeLog::evidence_of(const Output& output) {
-  const Seen& seen = seen_[place_of(output)];
-  const trace::Message& message = seen.message.message;
-  const auto text_at = [&](std::string_view path) {
-    const trace::Value* value = message.find(path);
-    return value ? value->text : std::string();
-  };
   if (again_.size() != seen_.size()) {
     again_.clear();
     std::unordered_set<std::string> said;
     for (const Output& one : target_->outputs())
       again_.push_back(!said.insert(text_of(one)).second);
   }
+  const trace::Message& message = message_at(place_of(output)).message;
+  const auto text_at = [&](std::string_view path) {
+    const trace::Value* value = message.find(path);
+    return value ? value->text : std::string();
+  };
   return {std::string(output.is_frame ? trace::link_text(kind_of(output)) : "app"),
           is_ack(message) ? "ack" : message.name, text_at("result"),
           again_[place_of(output)] ? "again" : "new"};
@@ -362,18 +375,18 @@ Evidence NodeLog::evidence_of(const Output& output) {
 std::vector<Overlong> NodeLog::overlong() const {
   std::vector<Overlong> out;
   for (std::size_t i = 0; i < seen_.size(); ++i) {
-    const trace::Concrete& message = seen_[i].message;
-    const bool known = std::ranges::any_of(
-        out, [&](const Overlong& one) { return one.rule == message.size_rule; });
-    if (message.size_rule == ReqId::kNone || known) continue;
-    out.push_back({&target_->outputs()[i], seen_[i].taken, message.size_rule, message.excess});
+    const Seen& seen = seen_[i];
+    const bool known =
+        std::ranges::any_of(out, [&](const Overlong& one) { return one.rule == seen.size_rule; });
+    if (seen.size_rule == ReqId::kNone || known) continue;
+    out.push_back({&target_->outputs()[i], seen.taken, seen.size_rule, seen.excess});
   }
   return out;
 }
 
 std::string NodeLog::text_of(const Output& output) const {
-  const Seen& seen = seen_[place_of(output)];
-  return fmt::format("{} {}", seen.link, trace::print(seen.message.message));
+  const std::size_t place = place_of(output);
+  return fmt::format("{} {}", seen_[place].link, trace::print(message_at(place).message));
 }
 
 }  // namespace rubric::runner

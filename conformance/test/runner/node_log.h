@@ -6,6 +6,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -20,7 +21,7 @@ namespace rubric::runner {
 
 struct LoggedLine {
   Ticks time = 0;
-  trace::Item line;
+  std::string text;
 };
 
 /// How the closest output missed a line: one of the same message in its window, or the very output
@@ -75,9 +76,12 @@ class NodeLog {
   int link_acks_to_come = 0;
 
  private:
+  // An output without its message: that is decoded anew where it is needed.
   struct Seen {
-    trace::Concrete message;
-    std::string link;
+    std::string name;
+    std::string_view link;
+    ReqId size_rule = ReqId::kNone;  // As in trace::Concrete.
+    std::size_t excess = 0;
     std::size_t order = 0;               // What is in one order has the same number here.
     bool foreign = false;                // `*` does not mean it.
     const trace::Line* taken = nullptr;  // By this line, if by any.
@@ -91,7 +95,10 @@ class NodeLog {
   /// Returns whether the line can be about this output: by its link, and as a message of the
   /// protocol where it says `*`.
   static bool is_about(const trace::Line& line, const Seen& seen);
-  Window given(Ticks now);
+  /// Notes when the last line of the log was given.
+  Window given(Ticks now, trace::Line line);
+  /// Returns the message of an output, until that of another is asked for.
+  const trace::Concrete& message_at(std::size_t place) const;
   /// Returns the outputs that may be in the window.
   Span in_window(const Window& window) const;
   /// Returns the first output of the span that no line has taken, that `line` can be about in this
@@ -109,7 +116,7 @@ class NodeLog {
     return static_cast<std::size_t>(&output - target_->outputs().data());
   }
   void read_outputs();
-  std::string link_name(const Output& output) const;
+  std::string_view link_name(const Output& output) const;
 
   std::string name_;
   std::unique_ptr<Target> target_;
@@ -126,6 +133,8 @@ class NodeLog {
   std::set<std::string> foreign_links_;  // and others.
   std::vector<bool> again_;              // One for each output: another one said the same before.
   std::vector<LoggedLine> log_;
+  mutable trace::Concrete message_;  // Of the output that was asked for last, its place after it.
+  mutable std::optional<std::size_t> place_;
 };
 
 }  // namespace rubric::runner

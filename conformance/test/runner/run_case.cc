@@ -439,6 +439,7 @@ class Run {
 
   void judge_outputs(CaseResult& result) {
     Ticks since = now_;  // Nothing that counts from what is missing comes before.
+    result.failures.reserve(missing_.size());
     for (const Missing& one : missing_) {
       since = std::min(since, one.wide.from);
       const Line& line = *one.timed.line;
@@ -544,14 +545,15 @@ class Run {
   }
 
   void write_log(CaseResult& result) const {
-    std::vector<LoggedLine> all;
+    std::vector<const LoggedLine*> all;
     for (const NodeLog& node : nodes_) {
-      all.insert(all.end(), node.log().begin(), node.log().end());
+      for (const LoggedLine& line : node.log()) all.push_back(&line);
     }
-    std::stable_sort(all.begin(), all.end(),
-                     [](const LoggedLine& a, const LoggedLine& b) { return a.time < b.time; });
-    result.log = trace::Case(case_.name);
-    for (LoggedLine& one : all) result.log.items.push_back(std::move(one.line));
+    std::ranges::stable_sort(all, {}, &LoggedLine::time);
+    std::size_t size = 0;
+    for (const LoggedLine* line : all) size += line->text.size() + 1;
+    result.log.reserve(size);
+    for (const LoggedLine* line : all) result.log.add(line->text);
   }
 
   const trace::Case& case_;

@@ -19,6 +19,7 @@
 #include <string_view>
 #include <vector>
 
+#include "conformance/test/runner/case_log.h"
 #include "conformance/test/runner/target.h"
 #include "conformance/trace/trace.h"
 
@@ -70,7 +71,7 @@ struct CaseResult {
   bool refused = false;          ///< Skipped: the program of the target answered `unsupported`.
   bool damaged = false;          ///< Inconclusive: what its line lost or doubled may decide it.
   Ticks length = 0;              ///< Virtual time that passed.
-  trace::Case log;               ///< Everything that was given and came back.
+  CaseLog log;                   ///< Everything that was given and came back.
 };
 
 /// Makes the implementation for a node under test.

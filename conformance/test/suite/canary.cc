@@ -63,7 +63,7 @@ std::string try_canary(const SuiteCase& one, targets::Attachment& attachment) {
     case CaseVerdict::kPass:
     case CaseVerdict::kWeak:
       return fmt::format("{} has to fail, for nothing causes what it asks for, but it passed",
-                         one.blank.name);
+                         one.one->name);
     case CaseVerdict::kError:  // Other cases show this fault too.
     case CaseVerdict::kInconclusive:
     case CaseVerdict::kSkip:
@@ -86,7 +86,7 @@ std::string dishonesty(targets::Attachment& attachment) {
     doing = "it breaks at a case that has to fail";
     const Cases known = Cases::of_text(canaries(), "canaries");
     for (const SuiteCase& one : known.all()) {
-      if (!plays(identity, one.blank.roles.front())) continue;
+      if (!plays(identity, one.roles().front())) continue;
       if (std::string wrong = try_canary(one, attachment); !wrong.empty()) return wrong;
     }
   } catch (const runner::TargetBroken& broken) {

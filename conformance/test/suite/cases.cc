@@ -33,25 +33,10 @@ std::string comment_of(const trace::Case& one) {
   return out;
 }
 
-SuiteCase suite_case(const trace::Parsed& file, const trace::Case& one) {
-  SuiteCase out{.file = &file, .one = &one};
-  const trace::Scope scope = trace::scope_of(file.file, one);
-  out.blank.name = one.name;
-  out.blank.file = file.file_name;
-  out.blank.comment = comment_of(one);
-  out.blank.nodes = scope.nodes;
-  out.blank.links = scope.links;
-  out.blank.seed = scope.seed;
-  out.blank.profile = scope.profile;
-  for (const trace::NodeHeader& node : scope.nodes) {
-    if (node.iut) add_once(out.blank.roles, static_cast<machine::Role>(node.role));
-  }
-  for (const trace::Line* line : one.lines()) {
-    for (const std::string& name : line->requirements) {
-      add_once(out.rules, name);
-      const ReqId id = trace::requirement_id(name);
-      if (id != ReqId::kNone) add_once(out.blank.requirements, id);
-    }
+std::vector<machine::Role> roles_of(const std::vector<trace::NodeHeader>& nodes) {
+  std::vector<machine::Role> out;
+  for (const trace::NodeHeader& node : nodes) {
+    if (node.iut) add_once(out, static_cast<machine::Role>(node.role));
   }
   return out;
 }
@@ -67,6 +52,36 @@ trace::Parsed read_file(const std::filesystem::path& path) {
 }
 
 }  // namespace
+
+CaseRun SuiteCase::blank() const {
+  trace::Scope scope = trace::scope_of(file->file, *one);
+  CaseRun out;
+  out.name = one->name;
+  out.file = file->file_name;
+  out.comment = comment_of(*one);
+  out.roles = roles_of(scope.nodes);
+  out.nodes = std::move(scope.nodes);
+  out.links = std::move(scope.links);
+  out.seed = scope.seed;
+  out.profile = std::move(scope.profile);
+  for (const std::string& name : rules()) {
+    const ReqId id = trace::requirement_id(name);
+    if (id != ReqId::kNone) add_once(out.requirements, id);
+  }
+  return out;
+}
+
+std::vector<machine::Role> SuiteCase::roles() const {
+  return roles_of(trace::scope_of(file->file, *one).nodes);
+}
+
+std::vector<std::string> SuiteCase::rules() const {
+  std::vector<std::string> out;
+  for (const trace::Line* line : one->lines()) {
+    for (const std::string& name : line->requirements) add_once(out, name);
+  }
+  return out;
+}
 
 Cases Cases::own() {
   Cases out;
@@ -107,18 +122,18 @@ const SuiteCase* Cases::find(std::string_view name) const {
 void Cases::add(trace::Parsed file) {
   const trace::Parsed& kept = files_.emplace_back(std::move(file));
   for (const trace::Case& one : kept.file.cases) {
-    SuiteCase added = suite_case(kept, one);
+    const SuiteCase added{&kept, &one};
     const std::string place =
         fmt::format("{}:{}: case {}", kept.file_name, one.place.line, one.name);
     if (const SuiteCase* other = find(one.name)) {
       throw std::runtime_error(fmt::format("{}: the name is also in {}, line {}", place,
-                                           other->blank.file, other->one->place.line));
+                                           other->file->file_name, other->one->place.line));
     }
-    if (added.blank.roles.empty()) {
+    if (added.roles().empty()) {
       throw std::runtime_error(place + " has no node under test (iut)");
     }
     places_[one.name] = cases_.size();
-    cases_.push_back(std::move(added));
+    cases_.push_back(added);
   }
 }
 

@@ -2,11 +2,10 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <list>
-#include <map>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <vector>
 
 #include "conformance/test/suite/result.h"
@@ -18,8 +17,13 @@ namespace rubric::suite {
 struct SuiteCase {
   const trace::Parsed* file = nullptr;
   const trace::Case* one = nullptr;
-  CaseRun blank;                   ///< What is known before it is run.
-  std::vector<std::string> rules;  ///< Named by its lines, families too, each once.
+
+  /// Returns what is known before it is run.
+  CaseRun blank() const;
+  /// Returns the roles of its nodes under test, each once.
+  std::vector<machine::Role> roles() const;
+  /// Returns the rules that its lines name, families too, each once.
+  std::vector<std::string> rules() const;
 };
 
 /// Owns the files. Names of cases are unique, and each has a node under test.
@@ -46,7 +50,7 @@ class Cases {
 
   std::list<trace::Parsed> files_;  // Cases point into them.
   std::vector<SuiteCase> cases_;
-  std::map<std::string, std::size_t, std::less<>> places_;  // By name.
+  std::unordered_map<std::string_view, std::size_t> places_;  // By name.
 };
 
 /// A golden trace as text, under its path in the project. Generated when the program is built.

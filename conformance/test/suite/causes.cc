@@ -105,13 +105,15 @@ void compare_with_machine(const trace::File& head, const trace::Case& one, CaseR
     kept.erase(its.place.line);
     if (out.profile != "paper") out.lines_of_profile.push_back(its.place.line);
   }
-  const Done done = done_in(right.log);
-  const Done own = done_in(out.result.log);
+  const trace::Case its_log = right.log.read();
+  const trace::Case own_log = out.result.log.read();
+  const Done done = done_in(its_log);
+  const Done own = done_in(own_log);
   for (Failure& failure : out.result.failures) {
     add_left_undone(done, own, failure);
     const auto line = kept.find(failure.place.line);
     if (failure.forbidden || failure.crash || line == kept.end()) continue;
-    const trace::Line* const did = nearest(right.log, failure, line->second->message.name);
+    const trace::Line* const did = nearest(its_log, failure, line->second->message.name);
     if (!did) continue;
     if (failure.requirements.empty()) {
       failure.requirements.assign(1, did->requirements.front());

@@ -176,7 +176,7 @@ std::vector<StaleExpectation> stale_expectations(const report::KnownFailures& ex
   for (const KnownFailure& entry : expected.entries) {
     const std::string place = fmt::format("{}:{}", expected.name, entry.line);
     const bool exists = std::any_of(all.all().begin(), all.all().end(), [&](const SuiteCase& one) {
-      return is_like(entry.cases, one.blank.name);
+      return is_like(entry.cases, one.one->name);
     });
     if (!exists) {
       out.push_back({place, fmt::format("no case is called '{}'", entry.cases)});

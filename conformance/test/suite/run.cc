@@ -59,7 +59,7 @@ class PlanRun {
       const char* const at_end = one.broke ? "after its last case" : "after `bye`";
       mishaps_.push_back(
           {before,
-           {before < run_.cases.size() ? "before " + plan_.cases[before / plan_.repeats].blank.name
+           {before < run_.cases.size() ? "before " + plan_.cases[before / plan_.repeats].one->name
                                        : at_end,
             std::move(one.text), one.broke, std::move(one.stderr_text)}});
     }
@@ -111,7 +111,7 @@ class PlanRun {
 
 CaseRun run_one(const SuiteCase& one, targets::Attachment& attachment, const std::string& profile,
                 std::optional<std::uint64_t> seed) {
-  CaseRun out = one.blank;
+  CaseRun out = one.blank();
   const auto start = Clock::now();
   out.result.name = out.name;
   trace::File head;  // One case as a file.

@@ -19,15 +19,15 @@ bool in_upper_case_equal(char a, char b) {
 }
 
 bool fits(const SuiteCase& one, const std::string& requirement) {
-  return std::any_of(one.rules.begin(), one.rules.end(),
-                     [&](const std::string& rule) { return is_of(rule, requirement); });
+  return std::ranges::any_of(one.rules(),
+                             [&](const std::string& rule) { return is_of(rule, requirement); });
 }
 
 void check_glob(const Cases& cases, const std::string& glob) {
   std::vector<std::string> names;
   for (const SuiteCase& one : cases.all()) {
-    if (is_like(glob, one.blank.name)) return;
-    names.push_back(one.blank.name);
+    if (is_like(glob, one.one->name)) return;
+    names.push_back(one.one->name);
   }
   throw std::invalid_argument(fmt::format("no case is called '{}'{}; --list shows them", glob,
                                           reflect::did_you_mean(glob, names)));
@@ -49,17 +49,18 @@ void check_requirement(const Cases& cases, const std::string& requirement) {
 }
 
 bool takes(const Selection& selection, const SuiteCase& one) {
-  const auto named = [&](const std::string& glob) { return is_like(glob, one.blank.name); };
+  const auto named = [&](const std::string& glob) { return is_like(glob, one.one->name); };
   const auto& globs = selection.globs;
   const auto& rules = selection.requirements;
-  const auto& roles = one.blank.roles;
   if (!globs.empty() && std::none_of(globs.begin(), globs.end(), named)) return false;
   if (std::any_of(selection.excepted.begin(), selection.excepted.end(), named)) return false;
   if (!rules.empty() && std::none_of(rules.begin(), rules.end(),
                                      [&](const std::string& rule) { return fits(one, rule); })) {
     return false;
   }
-  return !selection.role || std::find(roles.begin(), roles.end(), *selection.role) != roles.end();
+  if (!selection.role) return true;
+  const std::vector<machine::Role> roles = one.roles();
+  return std::ranges::find(roles, *selection.role) != roles.end();
 }
 
 }  // namespace

@@ -38,14 +38,15 @@ constexpr std::size_t kAfter = 3;
 
 // A line of the log, or nothing at the place of a missing one.
 struct Row {
-  const Line* line = nullptr;
+  std::optional<Line> line;
   bool marked = false;
 };
 
 runner::Ticks time_of(const Line& line) { return static_cast<runner::Ticks>(line.time.from); }
 
 std::vector<Row> rows_around(const CaseRun& one, const runner::Failure& failure) {
-  const std::vector<const Line*> lines = one.result.log.lines();
+  const trace::Case log = one.result.log.read();
+  const std::vector<const Line*> lines = log.lines();
   std::size_t at = 0;  // After its cause.
   bool breaks = false;
   for (std::size_t i = 0; i < lines.size() && !breaks; ++i) {
@@ -55,11 +56,11 @@ std::vector<Row> rows_around(const CaseRun& one, const runner::Failure& failure)
   }
   std::vector<Row> rows;
   for (std::size_t i = at - std::min(at, kBefore); i < at; ++i) {
-    rows.push_back({lines[i], breaks && i + 1 == at});
+    rows.push_back({*lines[i], breaks && i + 1 == at});
   }
-  if (!breaks && !failure.expected.empty()) rows.push_back({nullptr, true});
+  if (!breaks && !failure.expected.empty()) rows.push_back({std::nullopt, true});
   for (std::size_t i = at; i < std::min(at + kAfter, lines.size()); ++i) {
-    rows.push_back({lines[i], false});
+    rows.push_back({*lines[i], false});
   }
   return rows;
 }
@@ -283,7 +284,7 @@ class Story {
   }
 
   void surroundings(const CaseRun& one) {
-    if (one.result.failures.empty() || one.result.log.lines().empty()) return;
+    if (one.result.failures.empty() || one.result.log.empty()) return;
     const Failure& failure = one.result.failures.front();
     out_ += fmt::format("{}Log, in ticks of 1/{} s:\n", kIndent, machine::kTicksPerSecond);
     out_ += log_around(one, failure, 2 * kIndent.size(), options_.width);

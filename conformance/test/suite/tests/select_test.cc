@@ -37,7 +37,7 @@ case b.both
 std::vector<std::string> names(const Selection& selection) {
   static const Cases cases = Cases::of_text(kTraces, "x.rtr");
   std::vector<std::string> out;
-  for (const SuiteCase& one : select(cases, selection)) out.push_back(one.blank.name);
+  for (const SuiteCase& one : select(cases, selection)) out.push_back(one.one->name);
   return out;
 }
 
@@ -114,13 +114,13 @@ TEST(Selection, FamiliesOfRules) {
 
 TEST(Cases, KnowTheirRulesRolesAndNodes) {
   const Cases cases = Cases::of_text(kTraces, "x.rtr");
-  const CaseRun& mote = cases.find("a.mote")->blank;
+  const CaseRun mote = cases.find("a.mote")->blank();
   EXPECT_EQ(mote.comment, "Catches one thing and another.");
   EXPECT_EQ(mote.file, "x.rtr");
   EXPECT_THAT(mote.requirements, ElementsAre("J4-CLOCK"_rule, "J1-SEQ"_rule));
   EXPECT_THAT(mote.roles, ElementsAre(machine::Role::kMote));
   EXPECT_EQ(mote.nodes.size(), 2U);
-  const CaseRun& both = cases.find("b.both")->blank;
+  const CaseRun both = cases.find("b.both")->blank();
   EXPECT_THAT(both.roles, ElementsAre(machine::Role::kMote, machine::Role::kSink));
   EXPECT_EQ(both.seed, 7U);
   EXPECT_EQ(cases.find("b.nothing"), nullptr);
@@ -131,8 +131,8 @@ TEST(Cases, TheProgramCarriesThoseOfTheProject) {
   const Cases read = Cases::of({"conformance/cases"});
   ASSERT_EQ(own.all().size(), read.all().size());
   for (std::size_t i = 0; i < own.all().size(); ++i) {
-    EXPECT_EQ(own.all()[i].blank.name, read.all()[i].blank.name);
-    EXPECT_EQ(own.all()[i].blank.file, read.all()[i].blank.file);
+    EXPECT_EQ(own.all()[i].one->name, read.all()[i].one->name);
+    EXPECT_EQ(own.all()[i].file->file_name, read.all()[i].file->file_name);
     EXPECT_EQ(*own.all()[i].one, *read.all()[i].one);
   }
   for (const EmbeddedFile& one : embedded_files()) {

@@ -70,11 +70,11 @@ ImplementationRun hostile(const ImplementationRun& good) {
     }
     trace::Line line = trace::Line();
     line.time = trace::Time::at(1);
-    line.node = kMarkup;
+    line.node = "m5";
     line.op = trace::Op::kEmits;
     line.link = "rA";
     line.bytes = std::string("\0\xFF\xFF", 3);
-    line.message = trace::Message::named(kMarkup);
+    line.message = trace::Message::named("am").with("payload", trace::Value::quoted(kMarkup));
     one.result.log.add(line);
   }
   return out;
