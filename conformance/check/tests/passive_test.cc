@@ -420,17 +420,20 @@ TEST(Passive, WhatComesFromOtherIslandsIsSeenOnNoLine) {
 
 // Nothing else shows the island that the sink had before its host set another.
 TEST(Passive, AReportThatIsUnderWayShowsTheFormerIsland) {
-  const auto found = [](double reported_ms) {
+  const auto found = [](double reported_ms, std::int64_t response_ms = 293) {
     Script script;
     script.request(0, 4, 100).reply(10, 7, 4, 100, 10).ack_join(20, 7, 4, 100).link_ack();
     script.dsn[11 * 65536U + 1] = script.dsn[7 * 65536U + 1];
     script.serial(60, true, am::kConfig, {10, 0, 11}).confirm();
     script.ack_join(80, 7, 4, 100).link_ack().joined(reported_ms, 7, 4);
-    script.join(1500, 11, 5, 200).join(2000, 12, 6, 300, 2);
-    return found_in(script);
+    script.join(2500, 11, 5, 200).join(3000, 12, 6, 300, 2);
+    return found_in(
+        script, {.sniffer_complete = true, .start_cold = true, .response_us = 1000 * response_ms});
   };
   EXPECT_EQ(found(110), "");
   EXPECT_EQ(found(1000).substr(0, 8), "F:N9-SET") << "It keeps its island.";
+  EXPECT_EQ(found(1000, 1500), "");
+  EXPECT_EQ(found(2000, 1500).substr(0, 8), "F:N9-SET");
 }
 
 TEST(Passive, ABufferIsNotFullOfWhatHasLeft) {
