@@ -258,6 +258,8 @@ struct Context {
   bool line_recorded(std::uint16_t sink, std::int64_t time_us) const;
   /// Returns whether the run has all that came down the sink's line since then.
   bool hears_line(std::uint16_t sink, std::int64_t since_us) const {
+    if (device(sink).whole) return true;
+    if (options.start_cold) since_us = std::max(since_us, run.start_us);
     return has_lines(sink) && !half_heard(sink) && line_recorded(sink, since_us);
   }
   /// Reports what was gathered about nodes that fell silent and hosts that are not in the run.

@@ -436,6 +436,11 @@ TEST(Passive, ALineThatIsNotCapturedMayExplainWhatASinkDoes) {
   };
   EXPECT_EQ(finds(radiates, true), "F:N6-OWN");
   EXPECT_EQ(finds(radiates, false), "I:N6-OWN");
+  Script first;  // What came down just before the capture is not in it.
+  first.join(0, 11, 2, 100).net(60, 1, 5, message({11, 1}, {12, 5}, 7), 11);
+  first.serial(500, true, am::kConfig, {1, 0, 0}).confirm();
+  EXPECT_EQ(found_in(first, true).substr(0, 8), "F:N6-OWN");
+  EXPECT_EQ(found_in(first, false).substr(0, 8), "I:N6-OWN");
   const auto acks_twice = [](Script& script) {
     const NetFields asked = message({12, 3}, {11, 1}, 7, 1);
     script.net(1000, 3, 1, asked).net(1040, 1, 3, asked.ack(50), 11);
