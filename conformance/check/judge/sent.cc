@@ -514,7 +514,11 @@ void Originals::judge_number(std::uint16_t node, const Observation& seen, const 
                          seen.place.timed() && before.place.timed() &&
                          now - before.place.time_us < kAtOnceUs;
     if (at_once) {
-      context_.report("N2-ONCE"_rule, context_.on_line(node, Severity::kFail), seen.place, node,
+      // A sink's host may have handed it down again.
+      const bool heard = context_.hears_line(node, before.place.time_us);
+      context_.report("N2-ONCE"_rule,
+                      heard ? context_.on_line(node, Severity::kFail) : Severity::kInconclusive,
+                      seen.place, node,
                       {"The same message, number " + number(net.seq_num) + ", is sent twice, " +
                            ms_text(now - before.place.time_us) + " apart.",
                        "Once.",
