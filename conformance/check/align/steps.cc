@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "conformance/check/align/align.h"
 #include "conformance/check/links.h"
 #include "conformance/check/message.h"
 #include "conformance/machine/transport.h"
@@ -22,11 +21,10 @@ constexpr std::int64_t kAcrossUs = 50'000;          // The same between two taps
 constexpr std::int64_t kGoesOnUs = 1'000;           // How soon the first frame after a step comes.
 constexpr std::int64_t kLateAckUs = kLinkRepeatUs;  // Else of a copy that escaped.
 constexpr std::size_t kInterruptedMax = 4;          // More often it is the nodes that are slow.
-constexpr std::int64_t kResponseUs = AlignOptions{}.response_us;
-constexpr std::int64_t kSlowestUs = 1'000'000;  // Nobody waits for nodes that are slower.
-constexpr std::int64_t kHiddenUs = 1'000'000;   // A step forth that nothing shows is no longer.
-constexpr std::int64_t kLongUs = 5'000'000;     // No node takes so long.
-constexpr std::int64_t kAckRepeatUs = 810'000;  // After its reply an ack_join comes no later.
+constexpr std::int64_t kSlowestUs = 1'000'000;      // Nobody waits for nodes that are slower.
+constexpr std::int64_t kHiddenUs = 1'000'000;       // A step forth that nothing shows is no longer.
+constexpr std::int64_t kLongUs = 5'000'000;         // No node takes so long.
+constexpr std::int64_t kAckRepeatUs = 810'000;      // After its reply an ack_join comes no later.
 constexpr std::int64_t kSilenceUs = 20'000'000;
 constexpr std::int64_t kSilences = 10;  // Times the longest of the others.
 constexpr std::size_t kManyFrames = 40;
@@ -107,8 +105,11 @@ void exchanges(const Observation& seen, std::vector<Exchange>& ends,
 // One recorder's frames with stamps, in the order of the file.
 class Recorded {
  public:
-  Recorded(Run& run, std::vector<std::uint32_t> frames)
-      : run_(run), frames_(std::move(frames)), suspect_(frames_.size(), What::kGood) {
+  Recorded(Run& run, std::vector<std::uint32_t> frames, std::int64_t response_us)
+      : run_(run),
+        frames_(std::move(frames)),
+        response_us_(response_us),
+        suspect_(frames_.size(), What::kGood) {
     for (const std::uint32_t i : frames_) stamps_.push_back(run.seen[i].place.time_us);
     std::size_t turned = 0;
     for (std::size_t i = 1; i < stamps_.size(); ++i) turned += stamps_[i] < stamps_[i - 1] ? 1 : 0;
@@ -208,7 +209,8 @@ class Recorded {
   // Marks silences without which effects came in time after their causes. Where there are more
   // than a clock has steps the nodes are slow, so that their usual time is more.
   void interrupted() {
-    for (std::int64_t usual_us = kResponseUs; usual_us <= kSlowestUs; usual_us += usual_us / 8) {
+    const std::int64_t slowest_us = std::max(kSlowestUs, response_us_);
+    for (std::int64_t usual_us = response_us_; usual_us <= slowest_us; usual_us += usual_us / 8) {
       const std::set<std::size_t> silences = silences_beyond(usual_us);
       if (silences.size() > kInterruptedMax) continue;
       for (const std::size_t at : silences) suspect_[at] = What::kStep;
@@ -374,6 +376,7 @@ class Recorded {
 
   Run& run_;
   std::vector<std::uint32_t> frames_;  // Indices into Run::seen.
+  std::int64_t response_us_ = 0;
   std::vector<std::int64_t> stamps_;
   std::vector<What> suspect_;
   bool in_order_ = true;  // The file has its taps' frames in the order of time.
@@ -398,19 +401,19 @@ Changes changes_of(const Run& run, const std::vector<std::uint32_t>& frames) {
   return out;
 }
 
-void mend_file(Run& run, const std::vector<std::uint32_t>& frames) {
+void mend_file(Run& run, const std::vector<std::uint32_t>& frames, std::int64_t response_us) {
   if (frames.empty()) return;
   // A recorder of several taps writes them in order of time; or it writes a block of one, and then
   // a block of another.
   const Changes changes = changes_of(run, frames);
-  if (4 * changes.back <= changes.all) return Recorded(run, frames).mend();
+  if (4 * changes.back <= changes.all) return Recorded(run, frames, response_us).mend();
   const bool blocks = changes.all * kBlockFrames <= frames.size();
   std::vector<std::vector<std::uint32_t>> of_tap(run.taps.size());
   for (const std::uint32_t i : frames) of_tap[run.seen[i].tap].push_back(i);
   bool stepped = false;
   for (std::vector<std::uint32_t>& tap : of_tap) {
     if (tap.empty()) continue;
-    Recorded recorded(run, std::move(tap));
+    Recorded recorded(run, std::move(tap), response_us);
     recorded.mend();
     stepped = stepped || recorded.stepped();
   }
@@ -429,17 +432,18 @@ void mend_file(Run& run, const std::vector<std::uint32_t>& frames) {
 
 }  // namespace
 
-void mend_steps(Run& run) {
+void mend_steps(Run& run, std::int64_t response_us) {
+  response_us = std::max(response_us, AlignOptions{}.response_us);
   std::vector<std::uint32_t> frames;
   for (std::uint32_t i = 0; i < run.seen.size(); ++i) {
     const Observation& seen = run.seen[i];
     if (!frames.empty() && run.seen[frames.front()].place.file != seen.place.file) {
-      mend_file(run, frames);
+      mend_file(run, frames, response_us);
       frames.clear();
     }
     if (seen.node.empty() && seen.place.time_us != kNoStamp) frames.push_back(i);
   }
-  mend_file(run, frames);
+  mend_file(run, frames, response_us);
 }
 
 void place_steps(Run& run) {

@@ -35,14 +35,17 @@
 // less time passed than that, after one back much later. A failure remains if both have it.
 #pragma once
 
+#include <cstdint>
+
+#include "conformance/check/align/align.h"
 #include "conformance/check/observation.h"
 
 namespace rubric::check {
 
 /// Finds the steps of the clocks of `run`, whose stamps are those of the files and whose `seen` is
 /// in the order of files. Changes the times after a step so that they go on; Run::steps and
-/// Run::facts say where.
-void mend_steps(Run& run);
+/// Run::facts say where. Nodes that take no longer than `response_us` are not late.
+void mend_steps(Run& run, std::int64_t response_us = AlignOptions{}.response_us);
 
 /// Sets the times of Run::steps from those that their frames have by now.
 void place_steps(Run& run);

@@ -28,7 +28,7 @@ class Identifier {
         options_(options),
         given_(options),
         streams_(run, options),
-        lines_(run, given_, streams_) {}
+        lines_(run, options, given_, streams_) {}
 
   Identity run() {
     out_.marks.resize(run_.seen.size());

@@ -4,12 +4,13 @@
 #include <utility>
 
 #include "conformance/check/message.h"
+#include "conformance/check/terms.h"
 
 namespace rubric::check {
 namespace {
 
 constexpr std::int64_t kSerialRepeatUs = 1'500'000;  // TinyOS hosts wait 1000 ms.
-constexpr std::int64_t kUnderWayUs = 400'000;        // The response time, and the frame's.
+constexpr std::int64_t kFrameOnLineUs = 100'000;     // A report that waited for the line.
 constexpr std::size_t kShownMax = 256;
 
 // Returns the island that a report or the source of a passing message shows, never its destination
@@ -35,8 +36,12 @@ std::uint16_t reported_island(const Observation& seen, const Net& net) {
 
 }  // namespace
 
-SerialLines::SerialLines(const Run& run, const Given& given, Streams& streams)
-    : run_(run), streams_(streams), lines_(run.taps.size()) {
+SerialLines::SerialLines(const Run& run, const Options& options, const Given& given,
+                         Streams& streams)
+    : run_(run),
+      streams_(streams),
+      under_way_us_(terms_of(options).response_us + run.slack_us + kFrameOnLineUs),
+      lines_(run.taps.size()) {
   join_taps();
   // The one line belongs to the one sink that is given.
   SerialLine* only = nullptr;
@@ -103,7 +108,7 @@ void SerialLines::look(std::uint32_t index) {
   if (line.told && its != kNoIsland) line.back = its != line.island ? its : kNoIsland;
   // A report that was under way when the host set the island is the first to show the former one.
   const bool under_way = std::exchange(line.first_told, false) && seen.place.timed() &&
-                         seen.place.time_us - line.set_us <= kUnderWayUs;
+                         seen.place.time_us - line.set_us <= under_way_us_;
   if (under_way && reported != kNoIsland && reported != line.island) {
     line.first = reported;
     line.back = kNoIsland;

@@ -26,7 +26,7 @@ struct SerialLine {
 
 class SerialLines {
  public:
-  SerialLines(const Run& run, const Given& given, Streams& streams);
+  SerialLines(const Run& run, const Options& options, const Given& given, Streams& streams);
 
   /// Learns from observation `index`, a serial one.
   void look(std::uint32_t index);
@@ -46,6 +46,7 @@ class SerialLines {
 
   const Run& run_;
   Streams& streams_;
+  const std::int64_t under_way_us_;  // How late a report of before SET_ISLAND_ID comes.
   std::vector<SerialLine> lines_;
   std::vector<std::uint32_t> line_of_;  // By tap.
   std::vector<Shown> shown_;

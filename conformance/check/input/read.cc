@@ -220,7 +220,7 @@ Run in_one_order(Run run, const AlignOptions& options, std::optional<std::int64_
   leave_out_networks(run);
   leave_out_coarse_stamps(run);
   find_directions(run);
-  mend_steps(run);
+  mend_steps(run, options.response_us);
   const bool own_zero = begin_logs(run);
   align(run, options, own_zero);
   stamp_damaged(run);

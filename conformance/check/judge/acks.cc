@@ -248,18 +248,17 @@ void Acks::refuse(std::uint16_t node, const Observation& seen, const Net& ack, s
   Said said;
   ReqId rule = "T2-CONTENT"_rule;
   Severity severity = Severity::kFail;
+  // What a mote of its island sends comes by radio.
+  const bool of_mote = ack.dest.pid == ack.src.pid && !machine::is_reserved(ack.dest.devid);
+  const bool open = !of_mote && (!context_.has_lines(node) || context_.by_peis(node, ack.dest.pid));
   const bool report = best != nullptr && is_report(best->net);
   if (acked < 0) {
     said.text = "An ack's body of " + number(ack.body().size()) + " bytes holds no number.";
     said.expected = "The acknowledged number, alone or in a learning_notification.";
   } else if (best == nullptr || report) {
-    // What a mote of its own island sends comes by radio alone.
-    const bool of_mote = ack.dest.pid == ack.src.pid && !machine::is_reserved(ack.dest.devid);
     if (context_.half_heard(node) && !of_mote) return context_.needs_host(node, seen.place);
     severity = context_.on_line(node, context_.without_ever(kNobody, now));
-    if (!of_mote && (!context_.has_lines(node) || context_.by_peis(node, ack.dest.pid))) {
-      severity = Severity::kInconclusive;
-    }
+    if (open) severity = Severity::kInconclusive;
     if (!report) meant_ack(node, ack);
     early_[node] = {ack.dest, static_cast<std::uint16_t>(acked), now};
     said.text = "An ack to " + text_of(ack.dest) + " of number " +
@@ -303,6 +302,7 @@ void Acks::refuse(std::uint16_t node, const Observation& seen, const Net& ack, s
   } else {
     rule = "T2-ONCE"_rule;
     severity = context_.on_line(node, context_.without_copy(best->sender, best->place, now));
+    if (open) severity = Severity::kInconclusive;
     said.text = "A second ack of " + name_of(best->net) + ".";
     said.expected = "One ack for each time that it was received.";
   }
@@ -475,7 +475,7 @@ void Acks::missing_ack(std::uint16_t node, Arrived& arrived, std::int64_t now_us
   } else if (by_radio) {
     severity = context_.without(node, arrived.place.time_us, now_us);
   }
-  context_.report("T2-ACK"_rule, context_.on_line(node, severity), arrived.place, node,
+  context_.report("T2-ACK"_rule, context_.absent_on_line(node, severity), arrived.place, node,
                   {"It surely received " + name_of(arrived.net) +
                        ", reliable, and sent no ack within " + ms_text(context_.response_us(node)) +
                        (lives && !device.hearing ? ", though it sent other frames later." : "."),

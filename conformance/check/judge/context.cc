@@ -11,90 +11,11 @@
 namespace rubric::check {
 namespace {
 
-constexpr std::size_t kNumbersMin = 48;    // Of a line; a fifth of all frames shows by then,
-constexpr std::size_t kNumbersMissed = 8;  // and less when so many of them must be missing.
-constexpr std::size_t kHoleShare = 50;     // Frames of the air for each hole among them.
-// Hosts wait 1 s for a confirmation; stamps of frames on the line may be less apart.
-constexpr std::int64_t kHostWaitsUs = 950'000;
-
-// What a capture misses of the air.
-struct Missed {
-  std::size_t holes = 0;
-  std::size_t frames = 0;
-  bool many = false;
-};
-
-// Returns, by tap, whether frames of a serial line are missing from the capture, or may be. Hosts
-// number their packets, and send the next one when the mote has confirmed the last. A line with few
-// such numbers is no better than the capture of the air, whose frames are all numbered; alone it
-// proves nothing.
-std::vector<bool> find_lossy_taps(const Run& run, const Missed& air) {
-  struct Line {
-    const Observation* last = nullptr;
-    bool confirmed = false;
-    std::uint8_t damaged = 0;  // Frames since then; each may have been a packet or its ack.
-    std::size_t numbers = 0;   // That followed, or confirmed.
-    bool heard = false;        // Anything.
-  };
-  std::vector<Line> lines(run.taps.size());
-  std::vector<bool> out(run.taps.size());
-  for (std::size_t i = run.past.senders.size(); i < run.seen.size(); ++i) {
-    const Observation& seen = run.seen[i];
-    if (!seen.node.empty() || run.taps[seen.tap].link != machine::Link::kSerial) continue;
-    Line& line = lines[seen.tap];
-    const bool first = !std::exchange(line.heard, true);
-    if (seen.kind == Observation::Kind::kDamaged) {
-      if (line.damaged < 127) ++line.damaged;
-    } else if (seen.kind == Observation::Kind::kLinkAck && !seen.to_mote && line.last == nullptr) {
-      out[seen.tap] = out[seen.tap] || (!first && line.damaged == 0);  // Its packet is missing.
-    } else if (seen.kind == Observation::Kind::kLinkAck && !seen.to_mote) {
-      const auto ahead = static_cast<std::int8_t>(seen.dsn - line.last->dsn);
-      line.confirmed = line.confirmed || ahead == 0;
-      ++line.numbers;
-      if (ahead > line.damaged) out[seen.tap] = true;
-    } else if (seen.kind == Observation::Kind::kSerial && seen.to_mote && seen.ack_request) {
-      if (line.last != nullptr) {
-        const auto ahead = static_cast<std::uint8_t>(seen.dsn - line.last->dsn);
-        const bool soon =
-            !seen.place.timed() || seen.place.time_us - line.last->place.time_us < kHostWaitsUs;
-        const bool unconfirmed = !line.confirmed && line.damaged == 0 && soon;
-        if (ahead > 1 + line.damaged || unconfirmed) out[seen.tap] = true;
-      }
-      line = {&seen, false, 0, line.numbers + 1, true};
-    }
-  }
-  for (std::size_t tap = 0; tap < lines.size() && air.many; ++tap) {
-    const bool serial = run.taps[tap].link == machine::Link::kSerial;
-    const std::size_t numbers = lines[tap].numbers;
-    const bool few = numbers < kNumbersMin || numbers * air.holes < kNumbersMissed * air.frames;
-    if (serial && lines[tap].heard && few) out[tap] = true;
-  }
-  for (std::size_t tap = 0; tap < run.past.lossy_taps.size(); ++tap) {
-    if (run.past.lossy_taps[tap]) out[tap] = true;
-  }
-  return out;
-}
-
 bool is_of(ReqId requirement, std::string_view group) {
   return std::string_view(reflect::requirement(requirement).id).starts_with(group);
 }
 
-// Returns what the capture misses of the air.
-Missed missed_air(const Identity& who, const Options& options) {
-  Missed out;
-  for (const Device& device : who.devices) {
-    out.holes += device.holes.size();
-    out.frames += device.frames;
-  }
-  out.many = !options.sniffer_complete && kHoleShare * out.holes >= out.frames;
-  return out;
-}
-
 }  // namespace
-
-std::vector<bool> find_lossy_taps(const Run& run, const Identity& who, const Options& options) {
-  return find_lossy_taps(run, missed_air(who, options));
-}
 
 Context::Context(const Run& r, const Options& o, const Identity& w, Findings& f)
     : run(r), options(o), who(w), findings(f), unlogged_(terms_of(o)) {
@@ -168,8 +89,8 @@ void Context::look_up() {
            {one.text, one.expected, {}});
   }
   find_restarts();
-  lossy_taps = find_lossy_taps(run, who, options);
-  lossy_air = who.hears_radio && missed_air(who, options).many;
+  line_losses = find_line_losses(run, who, options);
+  lossy_air = who.hears_radio && misses_many_of_air(who, options);
   untimed_taps = run.unordered_taps;
   untimed_taps.resize(run.taps.size());
   unordered = std::find(untimed_taps.begin(), untimed_taps.end(), true) != untimed_taps.end();
@@ -254,14 +175,28 @@ bool Context::half_heard(std::uint16_t node) const {
   return !d.hearing && !d.taps.empty() && !down;
 }
 
-Severity Context::on_line(std::uint16_t node, Severity severity) const {
+const std::vector<std::uint32_t>& Context::lines_of(std::uint16_t node) const {
   const Device& d = device(node);
   const bool base = d.role == machine::Role::kBaseStation && d.partner != kNobody;
-  const std::vector<std::uint32_t>& taps = base ? device(d.partner).taps : d.taps;
-  const bool lossy =
-      std::any_of(taps.begin(), taps.end(), [this](std::uint32_t tap) { return lossy_taps[tap]; });
+  return base ? device(d.partner).taps : d.taps;
+}
+
+Severity Context::on_line(std::uint16_t node, Severity severity) const {
+  const bool lossy = std::ranges::any_of(
+      lines_of(node), [this](std::uint32_t tap) { return line_losses[tap].any; });
   // Where files are in no order, a frame of another line may be taken for this node's.
   return lossy || unordered ? std::min(severity, Severity::kInconclusive) : severity;
+}
+
+Severity Context::absent_on_line(std::uint16_t node, Severity severity) {
+  severity = on_line(node, severity);
+  if (severity <= Severity::kInconclusive) return severity;
+  for (const std::uint32_t tap : lines_of(node)) {
+    if (line_losses[tap].most == 0) continue;
+    --line_losses[tap].most;
+    return Severity::kInconclusive;
+  }
+  return severity;
 }
 
 bool Context::has_lines(std::uint16_t node) const {

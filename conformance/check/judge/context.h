@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "conformance/check/identify/identity.h"
+#include "conformance/check/identify/line_losses.h"
 #include "conformance/check/judge/findings.h"
 #include "conformance/check/message.h"
 #include "conformance/check/observation.h"
@@ -70,7 +71,7 @@ struct Context {
   std::vector<bool> down_taps;            ///< Taps with frames to a sink.
   std::vector<std::int64_t> tap_from_us;  ///< By tap: the first frame of its file.
 
-  std::vector<bool> lossy_taps;       ///< Serial lines of which the capture misses frames.
+  std::vector<LineLoss> line_losses;  ///< By tap: what the capture misses of a serial line.
   bool lossy_air = false;             ///< It misses many of the air; a link's repeat shows no gap.
   std::vector<std::int64_t> last_us;  ///< By device: when something of it was seen last.
 
@@ -247,17 +248,29 @@ struct Context {
   /// Returns `severity`, or kInconclusive if frames are missing from the capture of the line of
   /// `node`, a sink or base station: for findings that rest on a line's frame that is not there.
   Severity on_line(std::uint16_t node, Severity severity) const;
+  /// Returns the same where one frame that `node` owes on the line is not there: kInconclusive also
+  /// for as many as the recorder may have missed of a line that shows no loss. Counts it as one.
+  Severity absent_on_line(std::uint16_t node, Severity severity);
   /// Returns whether the run has all lines of the node: a mote has the air alone, of a sink or a
   /// base station nothing that depends on its serial line is known without it.
   bool has_lines(std::uint16_t node) const;
   /// Returns whether the capture of the sink's line had begun by then.
   bool line_recorded(std::uint16_t sink, std::int64_t time_us) const;
+  /// Returns whether the run has all that came down the sink's line since then.
+  bool hears_line(std::uint16_t sink, std::int64_t since_us) const {
+    if (device(sink).whole) return true;
+    if (options.start_cold) since_us = std::max(since_us, run.start_us);
+    return has_lines(sink) && !half_heard(sink) && line_recorded(sink, since_us);
+  }
   /// Reports what was gathered about nodes that fell silent and hosts that are not in the run.
   void finish();
   /// Reports a frame of an unknown sender.
   void report_stranger(const Observation& seen, std::uint16_t node);
 
  private:
+  // Returns the taps of the node's serial line; a base station has its sink's.
+  const std::vector<std::uint32_t>& lines_of(std::uint16_t node) const;
+
   std::vector<Terms> logged_;           // By device.
   std::vector<std::int64_t> begun_us_;  // Of these: when the log shows that it begins anew.
   std::vector<std::pair<std::int64_t, std::int64_t>> logs_us_;     // The log's first and last line.
@@ -289,9 +302,6 @@ struct Context {
   std::map<std::uint16_t, Gathered> silent_;  // By device, after its last frame.
   std::map<std::uint16_t, Gathered> unseen_;  // By sink, about what hosts send down its line.
 };
-
-/// Returns, by tap, whether frames of a serial line are missing from its capture, or may be.
-std::vector<bool> find_lossy_taps(const Run& run, const Identity& who, const Options& options);
 
 // Texts for findings.
 std::string text_of(machine::Address address);

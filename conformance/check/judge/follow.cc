@@ -229,7 +229,9 @@ void Follow::let_go() {
   const Identity who = identify(run_, options);
   Past gone;
   gone.until_us = run_.seen[end].place.time_us;
-  gone.lossy_taps = find_lossy_taps(run_, who, options);
+  for (const LineLoss& line : find_line_losses(run_, who, options)) {
+    gone.lossy_taps.push_back(line.any);
+  }
   Keeper keeper(run_, who);
   std::vector<std::size_t> chosen;
   for (std::size_t i = end; i > 0 && chosen.size() < kPastMax; --i) {

@@ -23,7 +23,8 @@ Forwarding::Forwarding(Context& context) : context_(context) {
     line.island = device.set_later ? kNoIsland : device.island;
     line.serial = device.shows_line();
     line.told = !context.options.start_cold;
-    line.slack_us = device.whole ? context.response_us(line.sink) : kIslandSlackUs;
+    const std::int64_t response_us = context.response_us(line.sink);
+    line.slack_us = device.whole ? response_us : std::max(kIslandSlackUs, response_us);
   }
 }
 

@@ -301,7 +301,7 @@ void Forwarding::overdue_up(Line& line, std::int64_t now_us, Severity most) {
         own_island ? "N6-FORWARD"_rule : "N6-ROUTE"_rule,
         crowded(line, passing, Link::kSerial) || context_.who.damaged(passing.place.time_us, now_us)
             ? Severity::kInconclusive
-            : std::min(most, context_.on_line(line.sink, Severity::kFail)),
+            : std::min(most, context_.absent_on_line(line.sink, Severity::kFail)),
         passing.place, line.sink,
         {"The sink received " + name_of(passing.net) + " (" +
              (log ? "by its log" : "the link acknowledged it") +

@@ -429,8 +429,10 @@ void Originals::judge_address(std::uint16_t node, const Observation& seen, const
   const bool up = route.onward == Route::Onward::kSerial;
   if (device.role == Role::kSink && link == Link::kRadio && up) {
     // Its base station may have handed it down (decision 126).
-    context_.report("N6-OWN"_rule, context_.on_line(node, Severity::kFail), seen.place, node,
-                    {"The sink sends " + name_of(net) + " by radio.", "Over serial.", {}});
+    const bool heard = context_.hears_line(node, seen.place.time_us - context_.response_us(node));
+    context_.report(
+        "N6-OWN"_rule, heard ? context_.on_line(node, Severity::kFail) : Severity::kInconclusive,
+        seen.place, node, {"The sink sends " + name_of(net) + " by radio.", "Over serial.", {}});
     return;
   }
   // Of a host in a capture it is weak (N8-LOOP): who writes there may not be the base station.
@@ -512,7 +514,11 @@ void Originals::judge_number(std::uint16_t node, const Observation& seen, const 
                          seen.place.timed() && before.place.timed() &&
                          now - before.place.time_us < kAtOnceUs;
     if (at_once) {
-      context_.report("N2-ONCE"_rule, context_.on_line(node, Severity::kFail), seen.place, node,
+      // A sink's host may have handed it down again.
+      const bool heard = context_.hears_line(node, before.place.time_us);
+      context_.report("N2-ONCE"_rule,
+                      heard ? context_.on_line(node, Severity::kFail) : Severity::kInconclusive,
+                      seen.place, node,
                       {"The same message, number " + number(net.seq_num) + ", is sent twice, " +
                            ms_text(now - before.place.time_us) + " apart.",
                        "Once.",

@@ -452,10 +452,12 @@ void SinkJoins::refuse_reply(SinkWatch& sink, PairWatch& watch, const Observatio
              (watch.request_listed || watch.answered_seq != reply.seq_num ||
               watch.request.time_us > watch.ack.time_us)) {
     rule = "J2-LISTED"_rule;
-    // A capture does not show that a sink lost its power, and with it its list; and one that misses
-    // frames of its line not that its island was set.
-    severity = watch.ack.time_us < sink.behind_us ? Severity::kInconclusive
-                                                  : context_.on_line(sink.device, Severity::kFail);
+    // A capture does not show that a sink lost its power, and with it its list; nor one without all
+    // of its line that its island was set, perhaps to the same one (decision 123).
+    const bool seen_whole =
+        watch.ack.time_us >= sink.behind_us && context_.hears_line(sink.device, watch.ack.time_us);
+    severity =
+        seen_whole ? context_.on_line(sink.device, Severity::kFail) : Severity::kInconclusive;
     said.text = "join_reply to mote " + number(am) + ", which the sink lists as a member.";
     said.expected = "No answer to a mote that is listed.";
   } else if (watch.asked && reply.seq_num != watch.request_seq) {

@@ -8,7 +8,6 @@ namespace rubric::check {
 
 void SinkJoins::judge_clock(SinkWatch& sink, const Observation& seen, const Reply& reply) {
   constexpr std::int64_t kOffMs = 1000;
-  constexpr std::int64_t kBehindMs = 300;  // Of a reply that waited for the channel.
   const std::int64_t now = seen.place.time_us;
   const std::vector<ClockStep>& steps = context_.run.steps;
   const bool stepped = doubt_us(steps, sink.clock_us, now) == ClockStep::kUnknown;
@@ -28,7 +27,9 @@ void SinkJoins::judge_clock(SinkWatch& sink, const Observation& seen, const Repl
     const std::int64_t least_ms = passed_ms - doubt_ms;
     // A clock in binary ms runs 2.4 % faster than one in ms.
     const std::int64_t most_ms = (passed_ms + doubt_ms) * 1024 / 1000 + kOffMs;
-    if (grown_ms < passed_ms - passed_ms / 20 - kBehindMs) sink.behind_us = now;
+    // A reply may have waited for so long, for the channel as well.
+    const std::int64_t waited_ms = context_.response_us(sink.device) / 1000;
+    if (grown_ms < passed_ms - passed_ms / 20 - waited_ms) sink.behind_us = now;
     Said said;
     said.text = "cur_time went from " + number(sink.clock_ms) + " to " + number(reply.time_ms) +
                 " while " + number(static_cast<std::uint64_t>(passed_ms)) + " ms passed.";

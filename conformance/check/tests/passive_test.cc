@@ -391,6 +391,65 @@ TEST(Passive, ALineMayMissAsMuchAsTheAir) {
   EXPECT_TRUE(fails(180, 25));
 }
 
+// A sink loses `lost` of 80 messages that its link acknowledged; one frame of the air is missing,
+// or none.
+TEST(Passive, ALineMayLoseAFewFramesAsTheAirDoes) {
+  const auto finds = [](int lost, bool hole) {
+    Script script;
+    script.join(0, 11, 2, 100);
+    if (hole) ++script.dsn[2];
+    for (std::uint16_t i = 0; i < 80; ++i) {
+      const NetFields sent = update(2, static_cast<std::uint16_t>(300 + i));
+      script.net(1000 + 700.0 * i, 2, 1, sent).link_ack();
+      if (i == 0 || i > lost) script.up(1012 + 700.0 * i, sent.forwarded());
+    }
+    const std::string found = found_in(script, {.start_cold = true});
+    return found.find("F:N6-FORWARD") != std::string::npos   ? "fails"
+           : found.find("I:N6-FORWARD") != std::string::npos ? "suspected"
+                                                             : "";
+  };
+  EXPECT_STREQ(finds(0, true), "");
+  EXPECT_STREQ(finds(1, false), "fails");
+  EXPECT_STREQ(finds(1, true), "suspected");
+  EXPECT_STREQ(finds(78, true), "fails") << "So many no recorder loses.";
+}
+
+// What a host may have sent down a line makes these lawful: SET_ISLAND_ID of the same island, which
+// empties the list, a message to pass on, and a copy of one that came by radio.
+TEST(Passive, ALineThatIsNotCapturedMayExplainWhatASinkDoes) {
+  const auto finds = [](auto acts, bool line) {
+    Script script;
+    script.join(0, 11, 2, 100).serial(500, true, am::kConfig, {1, 0, 0}).confirm();
+    acts(script);
+    const auto of_line = [](const Observation& seen) { return seen.tap != 0; };
+    if (!line) std::erase_if(script.run.seen, of_line);
+    return found_in(script, {.sniffer_complete = true});
+  };
+  const auto answers_member = [](Script& script) {
+    script.dsn[2] = 77;  // It was started again.
+    script.join(900, 11, 2, 555);
+  };
+  EXPECT_EQ(finds(answers_member, true), "F:J2-LISTED");
+  EXPECT_EQ(finds(answers_member, false), "I:J2-LISTED");
+  const auto radiates = [](Script& script) {
+    script.net(1000, 1, 5, message({11, 1}, {12, 5}, 7), 11);
+  };
+  EXPECT_EQ(finds(radiates, true), "F:N6-OWN");
+  EXPECT_EQ(finds(radiates, false), "I:N6-OWN");
+  Script first;  // What came down just before the capture is not in it.
+  first.join(0, 11, 2, 100).net(60, 1, 5, message({11, 1}, {12, 5}, 7), 11);
+  first.serial(500, true, am::kConfig, {1, 0, 0}).confirm();
+  EXPECT_EQ(found_in(first, true).substr(0, 8), "F:N6-OWN");
+  EXPECT_EQ(found_in(first, false).substr(0, 8), "I:N6-OWN");
+  const auto acks_twice = [](Script& script) {
+    const NetFields asked = message({12, 3}, {11, 1}, 7, 1);
+    script.net(1000, 3, 1, asked).net(1040, 1, 3, asked.ack(50), 11);
+    script.net(1080, 1, 3, asked.ack(51), 11);
+  };
+  EXPECT_EQ(finds(acks_twice, true), "F:N6-OWN F:T2-ONCE");
+  EXPECT_EQ(finds(acks_twice, false), "I:N6-OWN I:T2-ONCE");
+}
+
 TEST(Passive, AfterWrongSourcesTheRightOneIsRight) {
   Script script;
   script.join(0, 11, 2, 100);
@@ -420,17 +479,20 @@ TEST(Passive, WhatComesFromOtherIslandsIsSeenOnNoLine) {
 
 // Nothing else shows the island that the sink had before its host set another.
 TEST(Passive, AReportThatIsUnderWayShowsTheFormerIsland) {
-  const auto found = [](double reported_ms) {
+  const auto found = [](double reported_ms, std::int64_t response_ms = 293) {
     Script script;
     script.request(0, 4, 100).reply(10, 7, 4, 100, 10).ack_join(20, 7, 4, 100).link_ack();
     script.dsn[11 * 65536U + 1] = script.dsn[7 * 65536U + 1];
     script.serial(60, true, am::kConfig, {10, 0, 11}).confirm();
     script.ack_join(80, 7, 4, 100).link_ack().joined(reported_ms, 7, 4);
-    script.join(1500, 11, 5, 200).join(2000, 12, 6, 300, 2);
-    return found_in(script);
+    script.join(2500, 11, 5, 200).join(3000, 12, 6, 300, 2);
+    return found_in(
+        script, {.sniffer_complete = true, .start_cold = true, .response_us = 1000 * response_ms});
   };
   EXPECT_EQ(found(110), "");
   EXPECT_EQ(found(1000).substr(0, 8), "F:N9-SET") << "It keeps its island.";
+  EXPECT_EQ(found(1000, 1500), "");
+  EXPECT_EQ(found(2000, 1500).substr(0, 8), "F:N9-SET");
 }
 
 TEST(Passive, ABufferIsNotFullOfWhatHasLeft) {

@@ -182,6 +182,36 @@ TEST(Stated, ANodeIsThatOfTheLogThatHasLinesOfIt) {
   }
 }
 
+// A sink is told its island at 1100 ms, and forwards what comes at 2600 ms for the former one.
+TEST(Stated, ASinkTakesItsIslandWithinTheResponseTime) {
+  const auto found = [](std::int64_t response_ms) {
+    Script script;
+    script.join(0, 11, 2, 100);
+    script.serial(1100, true, am::kConfig, {10, 0, 13}).confirm();
+    script.net(2600, 2, 1, update(2, 7)).up(2612, update(2, 7).forwarded());
+    return found_in(script, {.start_cold = true, .response_us = 1000 * response_ms});
+  };
+  EXPECT_EQ(found(2000), "");
+  EXPECT_EQ(found(1400), "F:N9-SET");
+}
+
+// The clock of a reply is as old as the reply; one that is older may be that of a new life, which
+// lists nobody.
+TEST(Stated, AClockIsBehindByTheResponseTime) {
+  const auto found = [](std::int64_t response_ms) {
+    Script script;
+    script.join(0, 11, 2, 100).serial(500, true, am::kConfig, {1, 0, 0}).confirm();
+    script.request(1000, 4, 200).reply(1800, 11, 4, 200, 1010).ack_join(1820, 11, 4, 200);
+    script.link_ack().joined(1840, 11, 4);
+    script.dsn[2] = 77;
+    script.join(2000, 11, 2, 555);
+    return found_in(
+        script, {.sniffer_complete = true, .start_cold = true, .response_us = 1000 * response_ms});
+  };
+  EXPECT_EQ(found(1000), "F:J2-LISTED");
+  EXPECT_EQ(found(300), "I:J2-LISTED");
+}
+
 // How long a sink may be late with a reply (decision 125) is up to the mote that waits for it.
 TEST(Stated, AReplyIsMissingOnceTheCallOfItsMoteIsOver) {
   const auto late = [](const std::string& sink, const std::string& mote) {

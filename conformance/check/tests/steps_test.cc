@@ -20,13 +20,14 @@ namespace {
 using ::testing::HasSubstr;
 
 // Moves the stamps from `ms` on, as a recorder would; frames keep their order.
-check::Run stepped_at(Script script, double ms, double by_ms, std::size_t count = SIZE_MAX) {
+check::Run stepped_at(Script script, double ms, double by_ms, std::size_t count = SIZE_MAX,
+                      std::int64_t response_us = 0) {
   for (Observation& seen : script.run.seen) {
     if (seen.place.time_us < static_cast<std::int64_t>(ms * 1000) || count == 0) continue;
     seen.place.time_us += static_cast<std::int64_t>(by_ms * 1000);
     --count;
   }
-  mend_steps(script.run);
+  mend_steps(script.run, response_us);
   place_steps(script.run);
   merge(script.run);
   return script.run;
@@ -148,6 +149,15 @@ TEST(Steps, TheAckOfABaseStationIsNotLate) {
     for (int i = 0; !whole && i < 40; ++i) script.request(9000 + 600 * i, 9, 900);
     EXPECT_TRUE(stepped_at(script, 0, 0).steps.empty()) << whole;
   }
+}
+
+// A forward that is late only by the profile's response time: the node states another.
+TEST(Steps, ASlowNodeThatStatesItShowsNone) {
+  Script script = busy();
+  script.net(8000, 2, 1, update(2, 50)).up(9600, update(2, 50).forwarded());
+  EXPECT_EQ(stepped_at(script, 0, 0).steps.size(), 1U);
+  EXPECT_EQ(stepped_at(script, 0, 0, 0, 1'500'000).steps.size(), 1U) << "It is later than that.";
+  EXPECT_TRUE(stepped_at(script, 0, 0, 0, 2'000'000).steps.empty());
 }
 
 // A lawful mote repeats its ack_join for less than a second, and need not repeat it at all.

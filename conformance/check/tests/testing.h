@@ -212,8 +212,7 @@ class Script {
 };
 
 /// Returns the rules of all but notes, each with the letter of its severity: "F:N9-SET I:J5-STOP".
-inline std::string found_in(const Script& script, bool complete = true) {
-  Options options{.sniffer_complete = complete, .start_cold = complete};
+inline std::string found_in(const Script& script, const Options& options) {
   std::string out;
   for (const Finding& finding : judge(script.run, options).findings) {
     if (finding.severity == Severity::kNote) continue;
@@ -223,6 +222,9 @@ inline std::string found_in(const Script& script, bool complete = true) {
     out += ":" + std::string(id);
   }
   return out;
+}
+inline std::string found_in(const Script& script, bool complete = true) {
+  return found_in(script, {.sniffer_complete = complete, .start_cold = complete});
 }
 
 }  // namespace rubric::check

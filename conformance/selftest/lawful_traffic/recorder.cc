@@ -67,6 +67,10 @@ void drops_and_steps(Traffic& traffic, Random& random) {
   drops(traffic, random);
   steps_often(traffic, random);
 }
+void radio_alone(Traffic& traffic, Random&) {
+  std::erase_if(traffic.packets,
+                [](const LawfulPacket& packet) { return packet.interface != "radio"; });
+}
 
 constexpr Recorder kRecorders[] = {
     {"exact", "every packet with its time", exact},
@@ -77,6 +81,7 @@ constexpr Recorder kRecorders[] = {
     {"drifts", "the clock is wrong by 500 ppm", drifts},
     {"drops", "a fifth of all packets is missing, on the air and on lines", drops},
     {"drops_and_steps", "a fifth is missing, and the clock steps four times", drops_and_steps},
+    {"radio_alone", "what is on the air alone", radio_alone},
 };
 
 }  // namespace
