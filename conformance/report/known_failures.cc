@@ -8,6 +8,8 @@
 #include <cctype>
 #include <stdexcept>
 
+#include "codec/text/yaml.h"
+
 namespace rubric::report {
 namespace {
 
@@ -169,7 +171,7 @@ KnownFailures parse_known_failures(std::string_view text, const std::string& nam
   const bool check = command == KnownTo::kCheck;
   KnownFailures out{name, {}};
   try {
-    const YAML::Node root = YAML::Load(std::string(text));
+    const YAML::Node root = text::only_yaml_document(std::string(text));
     if (root.IsNull()) return out;
     if (!root.IsSequence()) {
       throw Mistake{

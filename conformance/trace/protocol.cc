@@ -11,6 +11,7 @@
 #include "codec/generated/rubicon/tables.h"
 #include "codec/reflect/frame.h"
 #include "codec/reflect/suggest.h"
+#include "codec/text/yaml.h"
 #include "conformance/trace/value_text.h"
 
 namespace rubric::trace {
@@ -350,7 +351,7 @@ Protocol read_protocol(const std::string& text, const std::string& file,
                        const FindWire& find_wire) {
   YAML::Node root;
   try {
-    root = YAML::Load(text);
+    root = text::only_yaml_document(text);
   } catch (const YAML::Exception& error) {
     throw std::runtime_error(file + ':' + std::to_string(error.mark.line + 1) + ':' +
                              std::to_string(error.mark.column + 1) + ": " + error.msg);

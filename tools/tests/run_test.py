@@ -440,7 +440,7 @@ islands:
                  "a colon or comma needs quotes"),
                 ("islands:\n\t- island: 11\n", 2, "a tab before the text"),
                 (island + "   radio: zep:0\n", 3, "begins at no column of a list or key above"),
-                (island + "---\n" + island, 4, "a second document"),
+                (island + "---\n" + island, 3, "belongs to nothing"),
                 ("space: mqtt://\n" + island, 1, "space: 'mqtt://': no host"),
                 ("space: mqtt://me:secret@x\n" + island, 1, "RUBRIC_MQTT_USER"),
                 ("loss: 101\n" + island, 1, "from 0 to 100"),

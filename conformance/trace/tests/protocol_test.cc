@@ -70,6 +70,8 @@ TEST(Protocol, MistakesHaveTheirPlaces) {
   } wrong[] = {
       {"", "app.yaml:1:1: expected the keys of a protocol"},
       {"a: [", "app.yaml:1:1: end of sequence flow not found"},
+      {head + "---\na: 1\n",
+       "app.yaml:9:1: what is here belongs to nothing; one document was expected"},
       {"protocol: 7up\n", "app.yaml:1:11: expected a name of letters, digits and _, given '7up'"},
       {"protocol: p\n", "app.yaml:1:1: a protocol without 'wire'"},
       {"protocol: p\nwire: w\nrules: x\n",

@@ -8,6 +8,7 @@
 #include <charconv>
 
 #include "codec/text/text.h"
+#include "codec/text/yaml.h"
 
 namespace rubricc {
 namespace {
@@ -91,12 +92,9 @@ std::optional<YAML::Node> parse_yaml(const std::string& file, const std::string&
                                      Diagnostics& diagnostics) {
   if (!is_plain_text(file, text, diagnostics)) return std::nullopt;
   try {
-    // The parser takes what follows a list or a mapping without fitting it for another document.
-    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
-    if (documents.size() < 2) return documents.empty() ? YAML::Node() : documents.front();
-    const YAML::Mark second = documents[1].Mark();
-    diagnostics.error({file, second.line + 1, second.column + 1}, "what is here belongs to nothing",
-                      "one document was expected");
+    return rubric::text::only_yaml_document(text);
+  } catch (const rubric::text::BehindDocument& e) {
+    diagnostics.error({file, e.mark.line + 1, e.mark.column + 1}, e.msg);
   } catch (const YAML::Exception& e) {
     diagnostics.error({file, e.mark.line + 1, e.mark.column + 1}, "not YAML: " + e.msg);
   }

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "codec/lines/line.h"
+#include "codec/text/yaml.h"
 #include "conformance/node/sizes.h"
 #include "tools/commands/run/names.h"
 #include "tools/commands/space/mqtt_space.h"
@@ -279,13 +280,11 @@ std::string syntax_error(const YAML::Exception& error, const std::string& text) 
 
 Ecology parse_ecology(const std::string& text, const std::string& name) {
   try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
-    if (documents.size() > 1) {
-      throw Mistake{line_of(documents[1]), "a second document: a file has all islands in one"};
-    }
-    return ecology_of(documents.empty() ? YAML::Node() : documents[0]);
+    return ecology_of(text::only_yaml_document(text));
   } catch (const Mistake& mistake) {
     throw std::runtime_error(fmt::format("{}:{}: {}", name, mistake.line, mistake.text));
+  } catch (const text::BehindDocument& behind) {
+    throw std::runtime_error(fmt::format("{}:{}: {}", name, behind.mark.line + 1, behind.msg));
   } catch (const YAML::Exception& broken) {
     throw std::runtime_error(
         fmt::format("{}:{}: {}", name, broken.mark.line + 1, syntax_error(broken, text)));

@@ -268,6 +268,8 @@ TEST(ExpectedFile, SaysWhatIsWrongAndWhere) {
   EXPECT_EQ(why("- skip: []\n  reason: x\n"), "k.yaml:1: skip: expected a text");
   EXPECT_THAT(why("- {skip: x, requirement: J4, reason: y}\n"), HasSubstr("unknown key"));
   EXPECT_THAT(why("- {"), HasSubstr("k.yaml:1: "));
+  EXPECT_THAT(why("- case: x\n  reason: z\n---\n- case: y\n"),  // Which would be passed over.
+              HasSubstr("k.yaml:3: what is here belongs to nothing"));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-# expect: 6:1: what is here belongs to nothing; one document was expected
+# expect: 5:1: what is here belongs to nothing; one document was expected
 meta:
   id: bad
   endian: be
