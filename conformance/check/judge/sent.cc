@@ -488,6 +488,8 @@ void Originals::judge_number(std::uint16_t node, const Observation& seen, const 
         now - before.place.time_us < context_.ack_timeout_us(node) - context_.early_us(node);
     const bool same =
         asked != Asked::kYes && same_message(before.net, net) && same_payload(before.net, net);
+    // Else a sink's host may have handed it down again.
+    const bool heard = context_.hears_line(node, before.place.time_us);
     if (awaits) {
       before.reused = !same;
       // An ack that nobody captured would have ended the wait.
@@ -495,7 +497,7 @@ void Originals::judge_number(std::uint16_t node, const Observation& seen, const 
       const bool by_sink = dest.devid == context_.sink_am || dest.devid == machine::kNullDevid;
       const std::uint16_t acker =
           by_sink || before.acked ? context_.only_sink : context_.mote_of_am[dest.devid];
-      const Severity severity = before.wait == Wait::kPerhaps
+      const Severity severity = before.wait == Wait::kPerhaps || (same && !heard)
                                     ? Severity::kInconclusive
                                     : context_.without(acker, before.place.time_us, now);
       context_.report(
@@ -514,8 +516,6 @@ void Originals::judge_number(std::uint16_t node, const Observation& seen, const 
                          seen.place.timed() && before.place.timed() &&
                          now - before.place.time_us < kAtOnceUs;
     if (at_once) {
-      // A sink's host may have handed it down again.
-      const bool heard = context_.hears_line(node, before.place.time_us);
       context_.report("N2-ONCE"_rule,
                       heard ? context_.on_line(node, Severity::kFail) : Severity::kInconclusive,
                       seen.place, node,

@@ -109,6 +109,8 @@ TEST(Lawful, NoAlarmComesBack) {
       {"island_change_forgets", 91, "exact"},  // An ack of before SET_ISLAND_ID.
       {"mixed", 2754, "exact"},  // A repeat of an ack_join whose first was not captured.
       {"host_loops_radiated", 615, "radio_alone"},  // A sink's own message, handed down again.
+      {"host_loops_radiated", 671, "radio_alone"},  // A reliable one.
+      {"host_loops_radiated", 968, "radio_alone"},
       {"same_devid", 42, "exact"},   // Namesakes with the same DSNs that join at once.
       {"same_devid", 189, "exact"},  // The same; the second accepts first.
   };
