@@ -1,4 +1,4 @@
-// YAML of which each line counts.
+// Reads YAML texts that must be one document.
 #pragma once
 
 #include <yaml-cpp/eventhandler.h>
@@ -10,8 +10,8 @@
 
 namespace rubric::text {
 
-/// What stands behind the first document: more documents, or what the parser takes for one as it
-/// fits nothing, such as a comma before all else.
+/// A text goes on behind its first document: with another, or with something that fits nothing,
+/// such as a comma before all else, which the parser takes for an empty document.
 struct BehindDocument : YAML::ParserException {
   explicit BehindDocument(const YAML::Mark& at)
       : ParserException(at, "what is here belongs to nothing; one document was expected") {}

@@ -213,7 +213,7 @@ class SerialForwarder(Base):
 
     def test_a_forwarder_that_serves_another(self):
         for command in (("send", "--as", "config", "--to"), ("decode",), ("forward",)):
-            for reads in (False, True):  # What it leaves unread resets the connection.
+            for reads in (False, True):  # Unread bytes make it a reset.
                 with self.subTest(command), socket.create_server(("127.0.0.1", 0)) as listener:
                     listener.settimeout(PATIENCE_S)
                     to = f"sf@127.0.0.1:{listener.getsockname()[1]}"

@@ -376,7 +376,7 @@ class Recorded {
 
   Run& run_;
   std::vector<std::uint32_t> frames_;  // Indices into Run::seen.
-  std::int64_t response_us_ = 0;
+  std::int64_t response_us_;
   std::vector<std::int64_t> stamps_;
   std::vector<What> suspect_;
   bool in_order_ = true;  // The file has its taps' frames in the order of time.

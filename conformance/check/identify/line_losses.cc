@@ -1,7 +1,6 @@
 #include "conformance/check/identify/line_losses.h"
 
 #include <cstdint>
-#include <utility>
 
 namespace rubric::check {
 namespace {

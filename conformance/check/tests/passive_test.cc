@@ -436,7 +436,7 @@ TEST(Passive, ALineThatIsNotCapturedMayExplainWhatASinkDoes) {
   };
   EXPECT_EQ(finds(radiates, true), "F:N6-OWN");
   EXPECT_EQ(finds(radiates, false), "I:N6-OWN");
-  Script first;  // What came down just before the capture is not in it.
+  Script first;  // The line may have had frames just before its capture began.
   first.join(0, 11, 2, 100).net(60, 1, 5, message({11, 1}, {12, 5}, 7), 11);
   first.serial(500, true, am::kConfig, {1, 0, 0}).confirm();
   EXPECT_EQ(found_in(first, true).substr(0, 8), "F:N6-OWN");

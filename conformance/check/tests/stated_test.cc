@@ -182,7 +182,7 @@ TEST(Stated, ANodeIsThatOfTheLogThatHasLinesOfIt) {
   }
 }
 
-// A sink is told its island at 1100 ms, and forwards what comes at 2600 ms for the former one.
+// The host sets the island at 1100 ms; at 2600 ms the sink still forwards for the former one.
 TEST(Stated, ASinkTakesItsIslandWithinTheResponseTime) {
   const auto found = [](std::int64_t response_ms) {
     Script script;
@@ -195,8 +195,8 @@ TEST(Stated, ASinkTakesItsIslandWithinTheResponseTime) {
   EXPECT_EQ(found(1400), "F:N9-SET");
 }
 
-// The clock of a reply is as old as the reply; one that is older may be that of a new life, which
-// lists nobody.
+// The clock of a reply is as old as the reply; an older one may be that of a new life, whose list
+// is empty.
 TEST(Stated, AClockIsBehindByTheResponseTime) {
   const auto found = [](std::int64_t response_ms) {
     Script script;
