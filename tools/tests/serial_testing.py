@@ -78,8 +78,12 @@ def read_until(fd, enough, got=b""):
 
 def holds(process, path):
     """Returns whether it has the file open."""
-    folder = pathlib.Path(f"/proc/{process.pid}/fd")
-    return os.path.realpath(path) in map(os.path.realpath, folder.iterdir())
+    def is_it(descriptor):
+        try:
+            return os.readlink(descriptor) == os.path.realpath(path)
+        except FileNotFoundError:  # Closed since it was listed.
+            return False
+    return any(map(is_it, pathlib.Path(f"/proc/{process.pid}/fd").iterdir()))
 
 
 class Pty:
