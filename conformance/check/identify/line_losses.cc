@@ -1,6 +1,7 @@
 #include "conformance/check/identify/line_losses.h"
 
 #include <cstdint>
+#include <utility>
 
 namespace rubric::check {
 namespace {
@@ -37,8 +38,7 @@ MissedOfAir missed_of_air(const Identity& who, const Options& options) {
 // Hosts number their packets, and send the next one when the mote has confirmed the last. A line
 // with few such numbers is no better than the capture of the air, whose frames are all numbered;
 // alone it proves nothing.
-std::vector<LineLoss> find_line_losses(const Run& run, const Identity& who,
-                                       const Options& options) {
+Losses find_losses(const Run& run, const Identity& who, const Options& options) {
   struct Line {
     const Observation* last = nullptr;
     bool confirmed = false;
@@ -89,11 +89,7 @@ std::vector<LineLoss> find_line_losses(const Run& run, const Identity& who,
   for (std::size_t tap = 0; tap < run.past.lossy_taps.size(); ++tap) {
     if (run.past.lossy_taps[tap]) out[tap].any = true;
   }
-  return out;
-}
-
-bool misses_many_of_air(const Identity& who, const Options& options) {
-  return missed_of_air(who, options).many;
+  return {std::move(out), air.many};
 }
 
 }  // namespace rubric::check

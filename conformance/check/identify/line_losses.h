@@ -15,10 +15,12 @@ struct LineLoss {
   std::size_t most = 0;  ///< Else so many may be: what it would lose as the air does.
 };
 
-/// Returns these by tap.
-std::vector<LineLoss> find_line_losses(const Run& run, const Identity& who, const Options& options);
+/// Frames that are not in the captures.
+struct Losses {
+  std::vector<LineLoss> lines;  ///< By tap.
+  bool many_of_air = false;     ///< Many frames of the air.
+};
 
-/// Returns whether captures miss many frames of the air.
-bool misses_many_of_air(const Identity& who, const Options& options);
+Losses find_losses(const Run& run, const Identity& who, const Options& options);
 
 }  // namespace rubric::check

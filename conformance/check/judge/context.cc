@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdio>
 #include <optional>
+#include <utility>
 
 #include "codec/reflect/requirements.h"
 #include "conformance/check/links.h"
@@ -89,8 +90,9 @@ void Context::look_up() {
            {one.text, one.expected, {}});
   }
   find_restarts();
-  line_losses = find_line_losses(run, who, options);
-  lossy_air = who.hears_radio && misses_many_of_air(who, options);
+  Losses losses = find_losses(run, who, options);
+  line_losses = std::move(losses.lines);
+  lossy_air = who.hears_radio && losses.many_of_air;
   untimed_taps = run.unordered_taps;
   untimed_taps.resize(run.taps.size());
   unordered = std::find(untimed_taps.begin(), untimed_taps.end(), true) != untimed_taps.end();
@@ -186,6 +188,13 @@ Severity Context::on_line(std::uint16_t node, Severity severity) const {
       lines_of(node), [this](std::uint32_t tap) { return line_losses[tap].any; });
   // Where files are in no order, a frame of another line may be taken for this node's.
   return lossy || unordered ? std::min(severity, Severity::kInconclusive) : severity;
+}
+
+Severity Context::unless_given(std::uint16_t sink, std::int64_t since_us, Severity severity) const {
+  if (device(sink).whole) return on_line(sink, severity);
+  if (options.start_cold) since_us = std::max(since_us, run.start_us);
+  const bool given = has_lines(sink) && !half_heard(sink) && line_recorded(sink, since_us);
+  return given ? on_line(sink, severity) : std::min(severity, Severity::kInconclusive);
 }
 
 Severity Context::absent_on_line(std::uint16_t node, Severity severity) {

@@ -256,12 +256,10 @@ struct Context {
   bool has_lines(std::uint16_t node) const;
   /// Returns whether the capture of the sink's line had begun by then.
   bool line_recorded(std::uint16_t sink, std::int64_t time_us) const;
-  /// Returns whether the run has all that came down the sink's line since then.
-  bool hears_line(std::uint16_t sink, std::int64_t since_us) const {
-    if (device(sink).whole) return true;
-    if (options.start_cold) since_us = std::max(since_us, run.start_us);
-    return has_lines(sink) && !half_heard(sink) && line_recorded(sink, since_us);
-  }
+  /// Returns the severity of something that a host may cause by what it hands down the sink's line
+  /// after `since_us`: at most kInconclusive unless the run has all of that (decision 26).
+  Severity unless_given(std::uint16_t sink, std::int64_t since_us,
+                        Severity severity = Severity::kFail) const;
   /// Reports what was gathered about nodes that fell silent and hosts that are not in the run.
   void finish();
   /// Reports a frame of an unknown sender.

@@ -229,7 +229,7 @@ void Follow::let_go() {
   const Identity who = identify(run_, options);
   Past gone;
   gone.until_us = run_.seen[end].place.time_us;
-  for (const LineLoss& line : find_line_losses(run_, who, options)) {
+  for (const LineLoss& line : find_losses(run_, who, options).lines) {
     gone.lossy_taps.push_back(line.any);
   }
   Keeper keeper(run_, who);

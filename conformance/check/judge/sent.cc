@@ -429,10 +429,9 @@ void Originals::judge_address(std::uint16_t node, const Observation& seen, const
   const bool up = route.onward == Route::Onward::kSerial;
   if (device.role == Role::kSink && link == Link::kRadio && up) {
     // Its base station may have handed it down (decision 126).
-    const bool heard = context_.hears_line(node, seen.place.time_us - context_.response_us(node));
-    context_.report(
-        "N6-OWN"_rule, heard ? context_.on_line(node, Severity::kFail) : Severity::kInconclusive,
-        seen.place, node, {"The sink sends " + name_of(net) + " by radio.", "Over serial.", {}});
+    const std::int64_t since_us = seen.place.time_us - context_.response_us(node);
+    context_.report("N6-OWN"_rule, context_.unless_given(node, since_us), seen.place, node,
+                    {"The sink sends " + name_of(net) + " by radio.", "Over serial.", {}});
     return;
   }
   // Of a host in a capture it is weak (N8-LOOP): who writes there may not be the base station.
@@ -488,8 +487,8 @@ void Originals::judge_number(std::uint16_t node, const Observation& seen, const 
         now - before.place.time_us < context_.ack_timeout_us(node) - context_.early_us(node);
     const bool same =
         asked != Asked::kYes && same_message(before.net, net) && same_payload(before.net, net);
-    // Else a sink's host may have handed it down again.
-    const bool heard = context_.hears_line(node, before.place.time_us);
+    // A sink's host may have handed it down again.
+    const std::int64_t since_us = before.place.time_us;
     if (awaits) {
       before.reused = !same;
       // An ack that nobody captured would have ended the wait.
@@ -497,12 +496,13 @@ void Originals::judge_number(std::uint16_t node, const Observation& seen, const 
       const bool by_sink = dest.devid == context_.sink_am || dest.devid == machine::kNullDevid;
       const std::uint16_t acker =
           by_sink || before.acked ? context_.only_sink : context_.mote_of_am[dest.devid];
-      const Severity severity = before.wait == Wait::kPerhaps || (same && !heard)
+      const Severity severity = before.wait == Wait::kPerhaps
                                     ? Severity::kInconclusive
                                     : context_.without(acker, before.place.time_us, now);
       context_.report(
-          same ? "T3-RESEND"_rule : "N12-REUSE"_rule, context_.on_line(node, severity), seen.place,
-          node,
+          same ? "T3-RESEND"_rule : "N12-REUSE"_rule,
+          same ? context_.unless_given(node, since_us, severity) : context_.on_line(node, severity),
+          seen.place, node,
           {(same ? "The reliable message with number " : "Number ") + number(net.seq_num) +
                (same ? " is sent" : " is used") + " again, " + ms_text(now - before.place.time_us) +
                " after the message with this number that awaits its ack.",
@@ -516,9 +516,7 @@ void Originals::judge_number(std::uint16_t node, const Observation& seen, const 
                          seen.place.timed() && before.place.timed() &&
                          now - before.place.time_us < kAtOnceUs;
     if (at_once) {
-      context_.report("N2-ONCE"_rule,
-                      heard ? context_.on_line(node, Severity::kFail) : Severity::kInconclusive,
-                      seen.place, node,
+      context_.report("N2-ONCE"_rule, context_.unless_given(node, since_us), seen.place, node,
                       {"The same message, number " + number(net.seq_num) + ", is sent twice, " +
                            ms_text(now - before.place.time_us) + " apart.",
                        "Once.",

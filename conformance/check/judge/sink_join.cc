@@ -454,10 +454,9 @@ void SinkJoins::refuse_reply(SinkWatch& sink, PairWatch& watch, const Observatio
     rule = "J2-LISTED"_rule;
     // A capture does not show that a sink lost its power, and with it its list; nor one without all
     // of its line that its island was set, perhaps to the same one (decision 123).
-    const bool seen_whole =
-        watch.ack.time_us >= sink.behind_us && context_.hears_line(sink.device, watch.ack.time_us);
-    severity =
-        seen_whole ? context_.on_line(sink.device, Severity::kFail) : Severity::kInconclusive;
+    severity = watch.ack.time_us < sink.behind_us
+                   ? Severity::kInconclusive
+                   : context_.unless_given(sink.device, watch.ack.time_us);
     said.text = "join_reply to mote " + number(am) + ", which the sink lists as a member.";
     said.expected = "No answer to a mote that is listed.";
   } else if (watch.asked && reply.seq_num != watch.request_seq) {
