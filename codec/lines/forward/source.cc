@@ -128,9 +128,9 @@ void Source::read(lines::SteadyTime now) {
   std::uint8_t room[kReadBytes];
   const ssize_t count = ::read(stream_.fd(), room, sizeof room);
   if (count < 0 && would_block(errno)) return;
-  const bool greeted = state_ != State::kGreeting || heard_bytes_ > 0;
-  if (count <= 0 && !greeted) throw lines::Broken(lines::kTurnedAway);
   if (count <= 0) {
+    const bool greeted = state_ != State::kGreeting || heard_bytes_ > 0;
+    if (!greeted) throw lines::Broken(lines::kTurnedAway);
     throw lines::Broken(fmt::format("the line broke: {}",
                                     count == 0 ? "the other end closed it" : std::strerror(errno)));
   }

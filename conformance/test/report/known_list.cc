@@ -164,11 +164,11 @@ std::string known_list(const SuiteRun& run, const report::KnownFailures& known) 
 std::string list_to_begin_with(const Cases& cases, machine::Role role) {
   std::map<std::string, std::vector<std::string>> by_call;
   for (const SuiteCase& one : cases.all()) {
-    if (one.roles() != std::vector{role}) continue;
-    const std::vector<trace::NodeHeader> nodes = one.blank().nodes;
+    const CaseRun blank = one.blank();
+    if (blank.roles != std::vector{role}) continue;
     const std::vector<const trace::Line*> lines = one.one->lines();
     const auto call = std::find_if(lines.begin(), lines.end(), [&](const trace::Line* line) {
-      return is_given_call(nodes, *line);
+      return is_given_call(blank.nodes, *line);
     });
     if (call != lines.end()) by_call[(*call)->message.name].push_back(one.one->name);
   }
