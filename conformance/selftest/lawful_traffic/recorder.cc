@@ -13,7 +13,6 @@ constexpr std::int64_t kEpochUs = 20'000'000'000;  // A clock that can step back
 constexpr std::int64_t kStepMinUs = 20'000;
 constexpr std::int64_t kBackMinUs = 1'200'000;
 constexpr std::size_t kStepOrders = 17;
-constexpr int kDroppedPercent = 20;
 constexpr std::int64_t kDriftPpm = 500;
 
 // Returns a size from 20 ms to 44 minutes; each order of magnitude is as likely.
@@ -56,13 +55,15 @@ void drifts(Traffic& traffic, Random& random) {
     packet.time_us += (packet.time_us - kEpochUs) * ppm / 1'000'000;
   }
 }
-void drops(Traffic& traffic, Random& random) {
+void drop(Traffic& traffic, Random& random, int percent) {
   bool first = true;  // It stays, so that a cold start remains one.
   std::erase_if(traffic.packets, [&](const LawfulPacket&) {
-    return !std::exchange(first, false) && random.chance(kDroppedPercent);
+    return !std::exchange(first, false) && random.chance(percent);
   });
   traffic.sniffer_complete = false;
 }
+void drops(Traffic& traffic, Random& random) { drop(traffic, random, 20); }
+void drops_few(Traffic& traffic, Random& random) { drop(traffic, random, 5); }
 void drops_and_steps(Traffic& traffic, Random& random) {
   drops(traffic, random);
   steps_often(traffic, random);
@@ -80,6 +81,7 @@ constexpr Recorder kRecorders[] = {
     {"wrong_stamp", "one stamp is wrong by 1.2 s to 44 minutes", wrong_stamp},
     {"drifts", "the clock is wrong by 500 ppm", drifts},
     {"drops", "a fifth of all packets is missing, on the air and on lines", drops},
+    {"drops_few", "a twentieth is missing", drops_few},
     {"drops_and_steps", "a fifth is missing, and the clock steps four times", drops_and_steps},
     {"radio_alone", "what is on the air alone", radio_alone},
 };
