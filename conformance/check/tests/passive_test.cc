@@ -146,6 +146,12 @@ TEST(Passive, WhatCameDownALineLeavesByRadio) {
               radiates(s, 780);
             })),
             "");
+  Script early;  // By taps whose clocks differ.
+  early.join(0, 11, 2, 100);
+  radiates(early, 470);
+  early.down(500, to_mote(7)).confirm();
+  answers(early, 900);
+  EXPECT_EQ(failures_of(early), "");
   EXPECT_EQ(failures_of(down_one([](Script&) {})), "");                      // The end.
   EXPECT_EQ(failures_of(down_one([](Script& s) { answers(s, 700); })), "");  // Too soon to say.
 }
@@ -319,6 +325,19 @@ void tell(Script& script, double ms, std::uint8_t island) {
 }
 
 // A sink that was told island 12, and took it, says later that it is of island 8, which nobody saw.
+TEST(Passive, APacketThatCameDamagedMayHaveSetTheIsland) {
+  for (const bool damaged : {true, false}) {
+    Script script;
+    script.join(0, 11, 2, 100).serial(1000, true, am::kConfig, {});
+    if (damaged) script.run.seen.back().kind = Observation::Kind::kDamaged;
+    script.dsn[13 * 65536U + 1] = script.dsn[11 * 65536U + 1];
+    script.join(2000, 13, 3, 200);
+    const NetFields net = message({13, 3}, {13, kNullDevid}, 7);
+    script.net(3000, 3, 1, net).up(3015, net.forwarded());
+    EXPECT_EQ(failures_of(script, complete()).empty(), damaged) << failures_of(script, complete());
+  }
+}
+
 TEST(Passive, ASinkThatIsNotHeardAgainMayHaveLostItsPower) {
   const auto says = [](bool heard) {
     Script script;
