@@ -48,7 +48,7 @@ void name_devices(const Run& run, Identity& out) {
 }
 
 bool Identity::damaged(std::int64_t from_us, std::int64_t to_us) const {
-  if (from_us < gone_us) return true;
+  if (gone_us >= 0 && from_us < gone_us) return true;
   const auto first = std::lower_bound(damaged_us.begin(), damaged_us.end(), from_us);
   return first != damaged_us.end() && *first <= to_us;
 }

@@ -1,6 +1,8 @@
 #include "conformance/check/input/directions.h"
 
+#include <map>
 #include <optional>
+#include <utility>
 
 #include "conformance/check/message.h"
 
@@ -17,6 +19,31 @@ std::optional<bool> shown_by(const Observation& seen) {
                   net.dest == machine::Address{net.src.pid, machine::kNullDevid};
   if (seen.ack_request) return up ? std::nullopt : std::optional(true);
   return up ? std::optional(false) : std::nullopt;
+}
+
+// Tells frames down lines that say nothing of directions, and have no numbers, by their messages:
+// what another island sends to that of the line was handed down.
+void find_handed_down(Run& run) {
+  const auto silent = [&](const Observation& seen) {
+    const Tap& tap = run.taps[seen.tap];
+    return seen.node.empty() && seen.kind == Observation::Kind::kSerial &&
+           seen.frame.type == am::kNet && !tap.has_direction && !tap.numbered;
+  };
+  std::map<std::pair<std::uint32_t, std::uint16_t>, std::size_t> up;  // By tap and island.
+  Net net;
+  for (const Observation& seen : run.seen) {
+    if (silent(seen) && shown_by(seen) == false && parse_net(seen.frame.payload, net)) {
+      ++up[{seen.tap, net.dest.pid}];
+    }
+  }
+  for (Observation& seen : run.seen) {
+    if (!silent(seen) || shown_by(seen) || !parse_net(seen.frame.payload, net)) continue;
+    const auto count = [&](std::uint16_t island) {
+      const auto found = up.find({seen.tap, island});
+      return found == up.end() ? 0 : found->second;
+    };
+    if (count(net.dest.pid) > count(net.src.pid)) seen.to_mote = true;
+  }
 }
 
 }  // namespace
@@ -38,6 +65,7 @@ void find_directions(Run& run) {
       seen.to_mote = seen.ack_request || seen.frame.type == am::kConfig;
     }
   }
+  find_handed_down(run);
   for (const Tap& tap : run.taps) {
     if (!tap.has_direction || tap.contradicted <= 0) continue;
     run.facts.push_back(tap.name +

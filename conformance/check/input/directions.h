@@ -4,7 +4,8 @@
 // 113). Where the capture has direction flags but most such frames contradict them, the flags are
 // those of the capturing host, to which a mote's frames are inbound: all are turned. Where it has
 // none, and some packets on the line ask for confirmation, those that do not are the mote's. Else
-// the message decides.
+// the message decides: what a base station sends, and what comes to the island of the line from
+// another, goes down it.
 #pragma once
 
 #include "conformance/check/observation.h"

@@ -228,8 +228,7 @@ void Acks::judge_ack_order(std::uint16_t node, const Observation& seen, const Ar
   }
 }
 
-// Takes an ack of a number that never came for that of a message which waits for its ack: what is
-// missing of that one is said with the wrong number.
+// Takes an ack of a number that never came for the one that a message waits for: it says both.
 void Acks::meant_ack(std::uint16_t node, const Net& ack) {
   Ring<Arrived, kRoom>& ring = arrived_[node];
   for (std::size_t i = 0; i < ring.size(); ++i) {
@@ -250,7 +249,9 @@ void Acks::refuse(std::uint16_t node, const Observation& seen, const Net& ack, s
   Severity severity = Severity::kFail;
   // What a mote of its island sends comes by radio.
   const bool of_mote = ack.dest.pid == ack.src.pid && !machine::is_reserved(ack.dest.devid);
-  const bool open = !of_mote && (!context_.has_lines(node) || context_.by_peis(node, ack.dest.pid));
+  const auto its = static_cast<std::uint16_t>(acked);
+  bool open = !of_mote && (!context_.has_lines(node) || context_.by_peis(node, ack.dest.pid));
+  open = open || context_.comes(node, seen, ack.dest, its);
   const bool report = best != nullptr && is_report(best->net);
   if (acked < 0) {
     said.text = "An ack's body of " + number(ack.body().size()) + " bytes holds no number.";
@@ -260,9 +261,8 @@ void Acks::refuse(std::uint16_t node, const Observation& seen, const Net& ack, s
     severity = context_.on_line(node, context_.without_ever(kNobody, now));
     if (open) severity = Severity::kInconclusive;
     if (!report) meant_ack(node, ack);
-    early_[node] = {ack.dest, static_cast<std::uint16_t>(acked), now};
-    said.text = "An ack to " + text_of(ack.dest) + " of number " +
-                number(static_cast<std::uint64_t>(acked)) +
+    early_[node] = {ack.dest, its, now};
+    said.text = "An ack to " + text_of(ack.dest) + " of number " + number(its) +
                 ", which no message that came to this node had.";
     said.expected = "The number of a reliable message from " + text_of(ack.dest) + ".";
     if (report && severity == Severity::kFail && best->net.app_id == ack.app_id) {

@@ -145,19 +145,21 @@ void Announcements::refuse_report(SinkWatch& sink, PairWatch& watch, const Place
                                   const Admission& announced, bool notice, bool astray) {
   const std::uint16_t mote_am = announced.devid;
   const std::string what = notice ? "moteJoined" : "serial_joined";
-  // In one file the order of its frames tells which came first.
   const auto its_ack = [&](const Observation& seen) {
     AckJoin ack;
-    if (seen.place.file == at.file && seen.place.frame > at.frame) return false;
     return seen.kind == Observation::Kind::kRadio && seen.frame.type == am::kAckJoin &&
            parse_ack_join(seen.frame.payload, ack) && ack.src.devid == mote_am &&
            ack.dest.pid == sink.island;
   };
   const bool open = !context_.device(sink.device).whole && at.timed();
-  if (const Observation* const ack = open ? context_.soon(at.time_us, its_ack) : nullptr) {
+  const Observation* const ack = open ? context_.soon(at.time_us, its_ack) : nullptr;
+  // In one file the order of its frames tells which came first, if it does so of other frames.
+  const bool one_file = ack != nullptr && ack->place.file == at.file;
+  const bool later = one_file && ack->place.frame > at.frame;
+  if (ack != nullptr && (!later || context_.taps_cross())) {
     watch.know_nothing();
     watch.ahead_us = at.time_us;
-    if (ack->place.file == at.file) return;
+    if (one_file && !later) return;
     context_.report("J6-ONLY"_rule, Severity::kInconclusive, at, sink.device,
                     {what + " of mote " + number(mote_am) + ", whose ack_join came " +
                          "later by less than two clocks may differ.",
@@ -182,6 +184,7 @@ void Announcements::refuse_report(SinkWatch& sink, PairWatch& watch, const Place
   if (h.member) {
     rule = "J6-REPEAT"_rule;
     severity = context_.on_line(sink.device, severity);  // Its island may have been set.
+    if (sink.perhaps_told) severity = std::min(severity, Severity::kInconclusive);
     // With an ack_join of a later request only the reply between them may be missing.
     if (watch.asked && has_ack && watch.request.time_us <= watch.ack.time_us &&
         watch.answered_seq != watch.request_seq) {
@@ -277,8 +280,12 @@ void Announcements::overdue_reports(SinkWatch& sink, std::int64_t end_us) {
   });
   for (const std::uint16_t am : due) {
     PairWatch& watch = sink.motes[am];
-    // Its list may be full of members from before the capture, unless it has taken a later one.
-    const bool room = context_.options.start_cold || sink.reported_us > watch.admitted.time_us;
+    // Its list may be full of members from before the capture, or of some whose joins came damaged,
+    // unless it has taken a later one.
+    const bool few = sink.motes.size() <= context_.profile(sink.device).members_max;
+    const bool all = context_.options.start_cold &&
+                     (few || !context_.who.damaged(context_.run.start_us, watch.admitted.time_us));
+    const bool room = all || sink.reported_us > watch.admitted.time_us;
     if (!room && !end) continue;
     // A late one passes (decision 125), but for a whole log, unless the mote asks again before.
     const auto is_report = [am](const Observation& seen) {

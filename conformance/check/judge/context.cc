@@ -106,6 +106,47 @@ void Context::look_up() {
   }
 }
 
+bool Context::comes(std::uint16_t node, const Observation& sent, machine::Address src,
+                    std::uint16_t seq_num) const {
+  if (device(node).whole || !sent.place.timed()) return false;
+  const auto is_cause = [&](const Observation& seen) {
+    const std::uint16_t sender =
+        who.marks[static_cast<std::size_t>(&seen - run.seen.data())].device;
+    const bool down = seen.kind == Observation::Kind::kSerial && sender != kNobody &&
+                      device(sender).partner == node;
+    const bool air = seen.kind == Observation::Kind::kRadio && sender != node;
+    Net net;
+    return (down || air) && seen.tap != sent.tap && seen.frame.type == am::kNet &&
+           parse_net(seen.frame.payload, net) && net.src == src && net.seq_num == seq_num;
+  };
+  return soon(sent.place.time_us, is_cause) != nullptr;
+}
+
+bool Context::taps_cross() const {
+  using Key = std::pair<machine::Address, std::uint16_t>;  // Source and number.
+  std::map<Key, std::int64_t> up;                          // When each was passed on.
+  std::set<Key> sent;                                      // By its mote.
+  for (std::size_t i = run.past.senders.size(); i < run.seen.size(); ++i) {
+    const Observation& seen = run.seen[i];
+    Net net;
+    const bool frame =
+        seen.kind == Observation::Kind::kRadio || seen.kind == Observation::Kind::kSerial;
+    if (!frame || !seen.node.empty() || seen.to_mote || !seen.place.timed()) continue;
+    if (seen.frame.type != am::kNet || !parse_net(seen.frame.payload, net)) continue;
+    const Key key(net.src, net.seq_num);
+    if (seen.kind == Observation::Kind::kSerial) {
+      up.try_emplace(key, seen.place.time_us);
+    } else if (seen.frame.src == net.src.devid && net.src.devid != sink_am) {
+      const auto before = up.find(key);
+      const bool late =
+          before != up.end() && seen.place.time_us - before->second <= options.skew_us;
+      if (late && !sent.contains(key)) return true;
+      sent.insert(key);
+    }
+  }
+  return false;
+}
+
 void Context::find_restarts() {
   struct Heard {
     std::map<std::uint16_t, std::pair<std::uint8_t, std::int64_t>> last;  // By device: DSN, time.
@@ -186,8 +227,10 @@ const std::vector<std::uint32_t>& Context::lines_of(std::uint16_t node) const {
 Severity Context::on_line(std::uint16_t node, Severity severity) const {
   const bool lossy = std::ranges::any_of(
       lines_of(node), [this](std::uint32_t tap) { return line_losses[tap].any; });
+  // A frame that came damaged may be the one that is missing.
+  const bool damaged = who.damaged(at_us - response_us(node), at_us);
   // Where files are in no order, a frame of another line may be taken for this node's.
-  return lossy || unordered ? std::min(severity, Severity::kInconclusive) : severity;
+  return lossy || unordered || damaged ? std::min(severity, Severity::kInconclusive) : severity;
 }
 
 Severity Context::unless_given(std::uint16_t sink, std::int64_t since_us, Severity severity) const {
@@ -454,7 +497,9 @@ Severity Context::without(std::uint16_t cause, std::int64_t from_us, std::int64_
 Severity Context::without_copy(std::uint16_t sender, const Place& first,
                                std::int64_t now_us) const {
   const bool late = now_us > due_us(sender, first.time_us) + kLinkRepeatUs;
-  const Severity severity = without(sender, first.time_us, now_us);
+  Severity severity = without(sender, first.time_us, now_us);
+  // The one that is taken for the first may be the copy.
+  if (who.damaged(first.time_us - kLinkRepeatUs, first.time_us)) severity = Severity::kInconclusive;
   // A copy has the DSN of the first, so that none seems to be missing.
   const bool told = options.sniffer_complete || (sender != kNobody && device(sender).hearing);
   return (late || told) && !lossy_air ? severity : std::min(severity, Severity::kInconclusive);

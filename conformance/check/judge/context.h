@@ -68,6 +68,8 @@ struct Context {
   std::vector<bool> untimed_taps;  ///< If unordered: taps with frames without a stamp,
                                    ///< or on a clock of their own.
 
+  std::int64_t at_us = 0;  ///< When the observation was that is judged.
+
   std::vector<bool> down_taps;            ///< Taps with frames to a sink.
   std::vector<std::int64_t> tap_from_us;  ///< By tap: the first frame of its file.
 
@@ -164,6 +166,13 @@ struct Context {
   const Observation* soon(std::int64_t time_us, Cause is_cause) const {
     return next(time_us, options.skew_us, is_cause);
   }
+  /// Returns whether a message with that source and number comes to `node` by another tap than that
+  /// of what it sends, so soon that it may be the cause: the clocks of two taps may differ.
+  bool comes(std::uint16_t node, const Observation& sent, machine::Address src,
+             std::uint16_t seq_num) const;
+  /// Returns whether a message is on a sink's line before it is on the air: then the clocks of the
+  /// taps differ, and the order of one file's frames tells nothing of what another tap saw.
+  bool taps_cross() const;
   /// Returns the first such thing that was seen then, or later by at most `within_us`.
   template <class Wanted>
   const Observation* next(std::int64_t time_us, std::int64_t within_us, Wanted is_wanted) const {

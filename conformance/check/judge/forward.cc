@@ -87,8 +87,17 @@ void Forwarding::judge_order(Line& line, const Passing& passing, const Observati
   const bool unclear = passing.twin || (up && !log && passing.whole_us > last.begun_us);
   if (passing.order > last.order && !passing.twin) last = {passing.order, passing.place.time_us};
   if (passing.order < last.order && !unclear) {
-    context_.report("N2-ORDER"_rule, context_.on_line(line.sink, Severity::kFail), seen.place,
-                    line.sink,
+    Severity severity = context_.on_line(line.sink, Severity::kFail);
+    // What came long ago may have been lost; then this is a later copy that the run does not show.
+    const std::int64_t since_us = seen.place.time_us - context_.response_us(line.sink);
+    if (!log && passing.last_us < since_us) {
+      if (up)
+        severity =
+            std::min(severity, context_.without(passing.sender, since_us, seen.place.time_us));
+      if (context_.comes(line.sink, seen, passing.net.src, passing.net.seq_num))
+        severity = std::min(severity, Severity::kInconclusive);
+    }
+    context_.report("N2-ORDER"_rule, severity, seen.place, line.sink,
                     {std::string("The sink ") + (up ? "forwards " : "radiates ") +
                          name_of(passing.net) + " after one that came later.",
                      "Messages leave in the order in which they came.",
@@ -159,12 +168,14 @@ bool Forwarding::sent_on_radio(std::uint16_t sink, const Observation& seen, cons
   // Of what shows another island plainly, only its DSN can have told that this sink sent it.
   const bool plain = net.src.pid == net.dest.pid && net.src.pid != line->island &&
                      !line->changing(seen.place.time_us);
-  if ((!plain && may_be_anothers(*line, net)) || relayed(*line, seen, net)) return true;
+  // It may come down the line soon, if the two taps' clocks differ.
+  const bool soon = context_.comes(sink, seen, net.src, net.seq_num);
+  if (!soon && ((!plain && may_be_anothers(*line, net)) || relayed(*line, seen, net))) return true;
   if (line->down.forgotten > 0) {
     --line->down.forgotten;
     return true;
   }
-  if (near != nullptr) {
+  if (near != nullptr && !soon) {
     refuse_down(*line, seen, net);
     return true;
   }
@@ -173,8 +184,8 @@ bool Forwarding::sent_on_radio(std::uint16_t sink, const Observation& seen, cons
   const bool sure = context_.without_ever(kNobody, now) == Severity::kFail &&
                     context_.on_line(sink, Severity::kFail) == Severity::kFail;
   const bool held = context_.busy(sink, line->island_changed_us, now);
-  if (!sure || held || line->changing(now)) return true;
-  if (context_.half_heard(sink)) {
+  const bool told = sure && !held && !soon && !line->changing(now);
+  if (told && context_.half_heard(sink)) {
     context_.needs_host(sink, seen.place);
     return true;
   }
@@ -187,6 +198,7 @@ bool Forwarding::sent_on_radio(std::uint16_t sink, const Observation& seen, cons
   ahead.net = net;
   ahead.place = seen.place;
   ahead.sure = !open;
+  ahead.told = told;
   if (line->ahead.full() && line->ahead.oldest(0).passed == 0)
     invented(*line, line->ahead.oldest(0));
   line->ahead.push(ahead);
@@ -195,6 +207,7 @@ bool Forwarding::sent_on_radio(std::uint16_t sink, const Observation& seen, cons
 }
 
 void Forwarding::invented(Line& line, const Passing& ahead) {
+  if (!ahead.told) return;
   context_.report("N7-CONTENT"_rule, ahead.sure ? Severity::kFail : Severity::kInconclusive,
                   ahead.place, line.sink,
                   {"The sink radiates " + name_of(ahead.net) + "; nobody sent it this.",
@@ -222,19 +235,23 @@ bool Forwarding::relayed(Line& line, const Observation& seen, const Net& net) {
   if (heard->relayed < 255) ++heard->relayed;
   const bool all = net.dest.pid == machine::kBroadcastPid && net.sound && heard->passed == 0;
   if (right || (all && !again)) return true;
+  // All sinks have one AM address: another one of which no frame was found may have sent it.
+  const bool anothers = std::ranges::any_of(lines_, [&](const Line& other) {
+    return other.sink != line.sink && !context_.device(other.sink).radio &&
+           other.island == net.dest.pid;
+  });
+  const bool open = anothers || line.changing(seen.place.time_us);
   const Severity severity = forbidden && heard->weak ? Severity::kWeak : Severity::kFail;
-  context_.report(
-      forbidden        ? heard->forbidden
-      : mote && !again ? "N4-MOTE"_rule
-                       : "N6-ONCE"_rule,
-      context_.on_line(line.sink,
-                       line.changing(seen.place.time_us) ? Severity::kInconclusive : severity),
-      seen.place, line.sink,
-      {"The sink sends on by radio " + name_of(net) +
-           (again ? " again." : ", which came by radio."),
-       mote ? "Nothing, or once to AM address " + number(net.dest.devid) + "."
-            : "Nothing by radio.",
-       {}});
+  context_.report(forbidden        ? heard->forbidden
+                  : mote && !again ? "N4-MOTE"_rule
+                                   : "N6-ONCE"_rule,
+                  context_.on_line(line.sink, open ? Severity::kInconclusive : severity),
+                  seen.place, line.sink,
+                  {"The sink sends on by radio " + name_of(net) +
+                       (again ? " again." : ", which came by radio."),
+                   mote ? "Nothing, or once to AM address " + number(net.dest.devid) + "."
+                        : "Nothing by radio.",
+                   {}});
   return true;
 }
 

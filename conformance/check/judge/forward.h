@@ -28,6 +28,7 @@ struct Passing {
   bool came = true;         ///< By a whole log it was given to the sink, or the sink was off.
   bool cut = false;         ///< It came without the bytes after its payload.
   bool twin = false;        ///< Another one of the same content is around.
+  bool told = false;        ///< One ahead of its cause: it is reported if that does not come.
   std::uint8_t copies = 1;  ///< Times that it may have been received.
   std::uint8_t passed = 0;
   std::uint8_t relayed = 0;  ///< Sent on by radio, where it came from.
@@ -87,6 +88,8 @@ class Forwarding {
   void set_island(std::uint16_t sink, std::uint16_t island, std::int64_t now_us, bool sure);
   /// Notes that the sink acts for that island.
   void acts(std::uint16_t sink, std::uint16_t island, std::int64_t now_us);
+  /// Notes that something came down its line damaged, which may have told it another island.
+  void perhaps_told(std::uint16_t sink);
   void begin_life(std::uint16_t sink, std::int64_t since_us);
   /// Judges what the sink owes, by a log that has all that it does until then.
   void overdue(std::uint16_t sink, std::int64_t now_us);

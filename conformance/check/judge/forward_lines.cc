@@ -58,6 +58,7 @@ void Forwarding::acts(std::uint16_t sink, std::uint16_t island, std::int64_t now
   Line* const line = find(sink);
   if (line == nullptr) return;
   change_island(*line, island, now_us, true);
+  line->island_sure = true;
   line->island_shown_us = now_us;
 }
 
@@ -70,6 +71,10 @@ void Forwarding::change_island(Line& line, std::uint16_t island, std::int64_t no
   line.island_sure = sure;
   line.last_island = line.island;
   line.island = island;
+}
+
+void Forwarding::perhaps_told(std::uint16_t sink) {
+  if (Line* const line = find(sink)) line->island_sure = false;
 }
 
 void Forwarding::begin_life(std::uint16_t sink, std::int64_t since_us) {
@@ -130,6 +135,15 @@ void Forwarding::repeated(const Net& net, std::uint16_t sink, std::int64_t now_u
       if (passing.copies < 255) ++passing.copies;
       passing.twin = true;
       passing.last_us = now_us;
+      // It may be sent on already, if the two taps' clocks differ.
+      Ring<Passing, kEarlyRoom>& early = sink == kNobody ? line.early : line.ahead;
+      for (std::size_t k = 0; k < early.size(); ++k) {
+        Passing& before = early.oldest(k);
+        if (before.passed != 0 || !same_message(before.net, net)) continue;
+        before.passed = 1;
+        ++passing.passed;
+        break;
+      }
       break;
     }
   }

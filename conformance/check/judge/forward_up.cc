@@ -166,6 +166,7 @@ void Forwarding::refuse_up(Line& line, const Observation& seen, const Net& net) 
     Passing& passing = line.up.newest(i);
     if (passing.net.seq_num != net.seq_num || passing.net.src != net.src) continue;
     const bool same = same_message(passing.net, net) && begins_with(net, passing.net);
+    if (same && context_.comes(line.sink, seen, net.src, net.seq_num)) break;
     Said said;
     if (same) {
       said.text = "The sink forwards " + name_of(net) + " again.";
@@ -236,7 +237,8 @@ void Forwarding::unheard(Line& line, const Passing& early) {
   const std::int64_t at_us = early.place.time_us;
   const bool damaged = context_.who.damaged(at_us - context_.response_us(line.sink),
                                             at_us + context_.options.skew_us);
-  const bool complete = context_.options.sniffer_complete && began && !damaged;
+  const bool moved = !line.island_sure && early.net.src.devid == line.am;  // To another island.
+  const bool complete = context_.options.sniffer_complete && began && !damaged && !moved;
   const Severity severity = complete ? Severity::kFail : Severity::kInconclusive;
   if (meant != nullptr && complete) {
     if (meant->owed) --line.up.owed;

@@ -57,6 +57,7 @@ bool Judge::is(std::uint16_t device, Role role) const {
 void Judge::look(std::uint32_t index) {
   const Observation& seen = run_.seen[index];
   const Mark& mark = who_.marks[index];
+  context_.at_us = seen.place.time_us;
   overdue(mark.device, seen.place.time_us);
   if (mark.receiver != mark.device) overdue(mark.receiver, seen.place.time_us);
   switch (seen.kind) {
@@ -107,18 +108,6 @@ void Judge::look(std::uint32_t index) {
     case Kind::kForeign:
     case Kind::kLinkAck: break;
   }
-}
-
-// Reports a packet whose check sum is right, so that no line damaged it, and whose length is not.
-void Judge::malformed(const Observation& seen) {
-  if (seen.broken != "WIRE-AM-LENGTH"_rule) return;
-  std::uint16_t sender = kNobody;
-  if (seen.tap < who_.sink_of_tap.size()) sender = who_.sink_of_tap[seen.tap];
-  if (sender != kNobody && seen.to_mote) sender = who_.devices[sender].partner;
-  context_.report(seen.broken, Severity::kFail, seen.place, sender,
-                  {"The length of a packet on a serial line is not that of its bytes.",
-                   "The number of bytes after the header, at most 114.",
-                   {}});
 }
 
 void Judge::overdue(std::uint16_t device, std::int64_t now_us) {

@@ -9,6 +9,24 @@
 namespace rubric::check {
 using machine::Role;
 
+// Takes what no node hears. Reports a packet whose check sum is right, so that no line damaged it,
+// and whose length is not.
+void Judge::malformed(const Observation& seen) {
+  std::uint16_t sender = kNobody;
+  if (seen.tap < who_.sink_of_tap.size()) sender = who_.sink_of_tap[seen.tap];
+  if (seen.broken != "WIRE-AM-LENGTH"_rule) {
+    // It may have been SET_ISLAND_ID.
+    if (sender == kNobody || (run_.taps[seen.tap].has_direction && !seen.to_mote)) return;
+    sinks_.perhaps_told(sender);
+    return forwarding_.perhaps_told(sender);
+  }
+  if (sender != kNobody && seen.to_mote) sender = who_.devices[sender].partner;
+  context_.report(seen.broken, Severity::kFail, seen.place, sender,
+                  {"The length of a packet on a serial line is not that of its bytes.",
+                   "The number of bytes after the header, at most 114.",
+                   {}});
+}
+
 void Judge::mote_hears(std::uint32_t index, std::uint16_t mote, const Observation& seen,
                        const Mark& mark, const Net& net) {
   const std::uint16_t am = who_.devices[mote].am;

@@ -404,7 +404,8 @@ void MoteJoins::refuse_ack(std::uint16_t mote, const Observation& seen, const Ac
       severity = context_.without(mote, h.last_request_us, now);
       if (context_.lossy_air) severity = Severity::kInconclusive;  // A namesake's, elsewhere.
     }
-    if (own) severity = context_.without(kNobody, h.first_request_us, now);
+    const std::int64_t since_us = h.first_request_us - context_.response_us(mote);
+    if (own) severity = context_.without(kNobody, since_us, now);  // Its copy may be damaged.
     if (!asked) severity = context_.without(mote, context_.device(mote).first_us, now);
     if (!asked && h.first_request_us == 0) severity = context_.without_ever(mote, now);
   }

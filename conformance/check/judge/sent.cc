@@ -430,7 +430,9 @@ void Originals::judge_address(std::uint16_t node, const Observation& seen, const
   if (device.role == Role::kSink && link == Link::kRadio && up) {
     // Its base station may have handed it down (decision 126).
     const std::int64_t since_us = seen.place.time_us - context_.response_us(node);
-    context_.report("N6-OWN"_rule, context_.unless_given(node, since_us), seen.place, node,
+    const bool comes = context_.comes(node, seen, net.src, net.seq_num);
+    const Severity most = comes ? Severity::kInconclusive : Severity::kFail;
+    context_.report("N6-OWN"_rule, context_.unless_given(node, since_us, most), seen.place, node,
                     {"The sink sends " + name_of(net) + " by radio.", "Over serial.", {}});
     return;
   }

@@ -112,8 +112,9 @@ struct PairWatch {
 struct SinkWatch {
   std::uint16_t device = kNobody;
   std::uint16_t island = kNoIsland;
-  bool island_set = false;  ///< SET_ISLAND_ID was seen.
-  bool island_sure = true;  ///< It surely arrived, if so.
+  bool island_set = false;    ///< SET_ISLAND_ID was seen.
+  bool island_sure = true;    ///< It surely arrived, if so.
+  bool perhaps_told = false;  ///< A packet down its line, which came damaged, may have been one.
   std::uint16_t former_island = kNoIsland;
   std::uint16_t start_island = kNoIsland;  ///< With which a life begins, if that was seen.
   std::int32_t ignored = -1;  ///< The value of the last config message that changes nothing.
@@ -180,6 +181,8 @@ class SinkJoins {
 
   /// Returns whether an address that is not the sink's is its own again, as keeps_former() has it.
   bool is_former(std::uint16_t sink, machine::Address address, const Place& at);
+  /// Notes that something came down its line damaged, which may have told it another island.
+  void perhaps_told(std::uint16_t sink);
   /// Notes that the sink acts for its island.
   void acts(std::uint16_t sink, std::int64_t now_us);
   /// Returns whether the sink has perhaps lost its power, and with it the island that it was told,

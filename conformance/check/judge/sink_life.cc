@@ -1,6 +1,7 @@
 // What shows that a sink began anew: its clock, as its join_replies tell it (decision 119), and the
 // island that it acts for (decision 123).
 #include <algorithm>
+#include <utility>
 
 #include "conformance/check/judge/sink_join.h"
 
@@ -61,6 +62,7 @@ void SinkJoins::judge_clock(SinkWatch& sink, const Observation& seen, const Repl
 bool SinkJoins::keeps_former(SinkWatch& sink, std::uint16_t shown, const Place& at,
                              std::int64_t cause_us) {
   if (!may_be_told(sink)) return false;
+  const bool damaged = std::exchange(sink.perhaps_told, false);
   const bool former = shown == sink.former_island;
   const bool under_way = cause_us >= 0 && cause_us < sink.island_set_us &&
                          at.time_us <= context_.due_us(sink.device, sink.island_set_us);
@@ -74,17 +76,24 @@ bool SinkJoins::keeps_former(SinkWatch& sink, std::uint16_t shown, const Place& 
       behind || unheard || context_.may_have_restarted(sink.device, sink.island_set_us, at.time_us);
   const bool started = sink.start_island == kNoIsland || sink.start_island == shown;
   const bool rebooted = anew && started && !device.hearing;
-  if (!rebooted && (sink.island_sure || !former)) return false;
-  const std::string why = !rebooted ? "nothing proves that it heard that."
-                          : behind  ? "its clock began anew, so that it may have lost its power."
-                          : unheard ? "it may have lost its power since it was last heard."
-                                    : "its DSNs began anew, so that it may have lost its power.";
+  if (!rebooted && !damaged && (sink.island_sure || !former)) return false;
+  const std::string why = damaged ? "a packet down its line, which came damaged, may have told it."
+                          : !rebooted ? "nothing proves that it heard that."
+                          : behind    ? "its clock began anew, so that it may have lost its power."
+                          : unheard   ? "it may have lost its power since it was last heard."
+                                      : "its DSNs began anew, so that it may have lost its power.";
   context_.report("N9-SET"_rule, Severity::kInconclusive, at, sink.device,
                   {"The sink acts for island " + number(shown) + " after it " +
                        (sink.island_set ? "was" : "had perhaps been") + " told island " +
                        number(sink.island) + "; " + why,
                    "Island " + number(sink.island) + ", if it was told.",
                    {}});
+  if (damaged) {
+    for (auto& [am, pair] : sink.motes) {
+      sink.set_due(pair, false);
+      pair.know_nothing();
+    }
+  }
   sink.island = shown;
   sink.former_island = kNoIsland;
   if (rebooted) sink.start_island = shown;  // It begins each life with one island.
@@ -94,7 +103,7 @@ bool SinkJoins::keeps_former(SinkWatch& sink, std::uint16_t shown, const Place& 
 
 // Returns whether the sink was told its island, perhaps before the capture.
 bool SinkJoins::may_be_told(const SinkWatch& sink) const {
-  return sink.island_set || !context_.options.start_cold;
+  return sink.island_set || sink.perhaps_told || !context_.options.start_cold;
 }
 
 bool SinkJoins::is_former(std::uint16_t sink, machine::Address address, const Place& at) {
@@ -107,8 +116,15 @@ bool SinkJoins::is_former(std::uint16_t sink, machine::Address address, const Pl
          std::ranges::none_of(sinks_, of_another) && keeps_former(*watch, address.pid, at, -1);
 }
 
+void SinkJoins::perhaps_told(std::uint16_t sink) {
+  if (SinkWatch* const watch = find(sink)) watch->perhaps_told = true;
+}
+
 void SinkJoins::acts(std::uint16_t sink, std::int64_t now_us) {
-  if (SinkWatch* const watch = find(sink)) watch->island_shown_us = now_us;
+  SinkWatch* const watch = find(sink);
+  if (watch == nullptr) return;
+  watch->island_shown_us = now_us;
+  watch->perhaps_told = false;
 }
 
 bool SinkJoins::may_have_lost_island(std::uint16_t sink, std::int64_t now_us) const {

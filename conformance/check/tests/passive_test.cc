@@ -146,6 +146,12 @@ TEST(Passive, WhatCameDownALineLeavesByRadio) {
               radiates(s, 780);
             })),
             "");
+  Script early;  // By taps whose clocks differ.
+  early.join(0, 11, 2, 100);
+  radiates(early, 470);
+  early.down(500, to_mote(7)).confirm();
+  answers(early, 900);
+  EXPECT_EQ(failures_of(early), "");
   EXPECT_EQ(failures_of(down_one([](Script&) {})), "");                      // The end.
   EXPECT_EQ(failures_of(down_one([](Script& s) { answers(s, 700); })), "");  // Too soon to say.
 }
@@ -319,6 +325,37 @@ void tell(Script& script, double ms, std::uint8_t island) {
 }
 
 // A sink that was told island 12, and took it, says later that it is of island 8, which nobody saw.
+// What comes damaged may be what is missing: a packet down the line, or a copy by radio.
+TEST(Passive, WhatCameDamagedMayBeTheCause) {
+  for (const bool damaged : {true, false}) {
+    const auto damage = [&](Script& script) {
+      if (damaged) script.run.seen.back().kind = Observation::Kind::kDamaged;
+    };
+    Script script;
+    script.join(0, 11, 2, 100).down(500, to_mote(7)).confirm();
+    radiates(script, 510);
+    Script again = script;
+    again.serial(600, true, am::kConfig, {});
+    damage(again);
+    radiates(again, 610);
+    EXPECT_EQ(failures_of(again, complete()), damaged ? "" : "N2-ONCE");
+    Script moved = script;  // By SET_ISLAND_ID.
+    moved.serial(1000, true, am::kConfig, {});
+    damage(moved);
+    const NetFields net = message({13, 3}, {13, kNullDevid}, 7);
+    moved.net(3000, 3, 1, net).up(3015, net.forwarded());
+    EXPECT_EQ(failures_of(moved, complete()), damaged ? "" : "J11-SEND N6-COLLISION");
+    Script copies = script;
+    copies.net(700, 2, 1, update(2, 5));
+    damage(copies);
+    if (!damaged) copies.run.seen.pop_back();
+    --copies.dsn[2];
+    copies.net(710, 2, 1, update(2, 5)).up(725, update(2, 5).forwarded());
+    copies.up(740, update(2, 5).forwarded());
+    EXPECT_EQ(failures_of(copies, complete()), damaged ? "" : "N6-ONCE");
+  }
+}
+
 TEST(Passive, ASinkThatIsNotHeardAgainMayHaveLostItsPower) {
   const auto says = [](bool heard) {
     Script script;

@@ -215,7 +215,10 @@ TEST(Read, ThePacketsKindShowsItsWay) {
   SerialCapture unnumbered({});  // Then the message decides.
   unnumbered.add(false, kSerialPacketNoAck, {0, 12, 0, 2, 0, 11, 255, 253, 0, 0, 5, 2, 3, 5});
   unnumbered.add(true, kSerialPacketNoAck, {0, 11, 255, 253, 0, 11, 0, 2, 0, 0, 5, 2, 3, 5});
-  EXPECT_EQ(unnumbered.ways(), "du");
+  // What another island sends to that of the line goes down it.
+  unnumbered.add(false, kSerialPacketNoAck, {0, 11, 0, 4, 0, 12, 0, 5, 0, 0, 6, 2, 3, 5});
+  unnumbered.add(true, kSerialPacketNoAck, {0, 12, 0, 5, 0, 11, 0, 4, 0, 0, 7, 2, 3, 5});
+  EXPECT_EQ(unnumbered.ways(), "dudu");
 }
 
 TEST(Read, FlagsOfTheCapturingHostAreTurned) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -121,6 +122,29 @@ inline Run read_apart(const std::string& capture, int files,
   std::string error;
   for (std::size_t i = 0; i < logs.size(); ++i) {
     EXPECT_TRUE(reader.add_bytes("log" + std::to_string(i), logs[i], error)) << error;
+  }
+  return reader.finish();
+}
+
+// Reads the capture with its packets in order of the stamps that `stamp_ns` gives them.
+inline Run read_sorted(const std::string& capture,
+                       const std::function<std::int64_t(const Packet&)>& stamp_ns) {
+  struct Kept {
+    Packet packet;
+    std::string interface;
+    std::vector<std::uint8_t> bytes;
+  };
+  std::vector<Kept> kept;
+  each_packet(capture, [&](const Packet& packet, const std::string& interface) {
+    kept.push_back({packet, interface, {packet.bytes.begin(), packet.bytes.end()}});
+    kept.back().packet.time_ns = stamp_ns(packet);
+  });
+  std::ranges::stable_sort(kept, {}, [](const Kept& one) { return one.packet.time_ns; });
+  RunReader reader;
+  const std::uint32_t file = reader.open("capture");
+  for (Kept& one : kept) {
+    one.packet.bytes = Bytes(one.bytes.data(), one.bytes.size());
+    reader.take(file, one.packet, one.interface);
   }
   return reader.finish();
 }

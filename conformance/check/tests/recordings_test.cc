@@ -439,6 +439,25 @@ TEST(LawfulCaptures, StampsScatter) {
   }
 }
 
+// A host stamps what it is handed: a sniffer's frames late, or those of a line, which wait for
+// more.
+TEST(LawfulCaptures, OneTapIsStampedLate) {
+  for (const char* scenario : {"timeline", "home", "open_door", "inter_island", "two_sinks"}) {
+    const Recorded run = recorded(scenario);
+    for (const bool radio : {false, true}) {
+      for (const int ms : {8, 16, 30, 45}) {
+        const auto late_ns = [&](const Packet& packet) {
+          return packet.time_ns + (is_radio(packet) == radio ? std::int64_t{ms} * 1'000'000 : 0);
+        };
+        for (const Options& options : {Options{}, complete()}) {
+          EXPECT_EQ(broken_in(judge(read_sorted(run.capture, late_ns), options)), "")
+              << scenario << " " << (radio ? "radio " : "line ") << ms;
+        }
+      }
+    }
+  }
+}
+
 // A late answer passes (decision 125), whatever else the sink sends before.
 TEST(LawfulCaptures, ASinkIsSlow) {
   for (const char* scenario : {"timeline", "home", "two_sinks", "hospital"}) {
