@@ -77,7 +77,14 @@ rubricc::GeneratedFiles emit(const CompilerOptions& options, const rubricc::Mode
   if (wants(options, "protocols")) append(out, rubricc::emit_protocols(model));
   if (wants(options, "profiles")) append(out, rubricc::emit_profiles(model));
   if (wants(options, "cases")) append(out, rubricc::emit_cases(model, options.cases));
-  if (wants(options, "lua")) append(out, rubricc::emit_lua(model));
+  if (wants(options, "lua")) {
+    const rubricc::GeneratedFiles dissector = rubricc::emit_lua(model);
+    if (dissector.empty()) {
+      std::cerr << "rubricc: no dissector, as no spec has a -carrier; "
+                   "'rubric install-wireshark --spec FILE.ksy' needs none\n";
+    }
+    append(out, dissector);
+  }
   if (wants(options, "json")) append(out, rubricc::emit_json(model));
   return out;
 }
@@ -103,7 +110,8 @@ int run(const CompilerOptions& options) {
   inputs.push_back(options.requirements);
   for (const std::string& input : inputs) {
     if (std::filesystem::exists(input) && !std::filesystem::is_directory(input)) continue;
-    std::cerr << "rubricc: cannot read " << input << '\n';
+    std::cerr << "rubricc: cannot read " << input
+              << (&input == &inputs.back() ? "; --requirements names another catalogue\n" : "\n");
     return rubric::cli::kExitInput;
   }
   const bool has_profiles = std::filesystem::is_directory(options.profiles);
@@ -163,6 +171,11 @@ int main(int argc, char** argv) {
     if (!requirements.is_given()) options.requirements = found(options.requirements);
     if (!profiles.is_given()) options.profiles = found(options.profiles);
     if (!cases.is_given()) options.cases = found(options.cases);
+    // Those that ship name the rules of the catalogue that ships, not of another one.
+    if (requirements.is_given() && !wants(options, "json")) {
+      if (!profiles.is_given() && !wants(options, "profiles")) options.profiles.clear();
+      if (!cases.is_given() && !wants(options, "cases")) options.cases.clear();
+    }
     if (options.check || !options.emit.empty()) return run(options);
     throw rubric::cli::UsageError("--check or --emit is required");
   });

@@ -1,6 +1,7 @@
 #include "tools/cli/command.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -11,6 +12,7 @@
 #include <optional>
 #include <sstream>
 #include <system_error>
+#include <type_traits>
 
 #include "codec/reflect/suggest.h"
 #include "codec/text/text.h"
@@ -94,12 +96,20 @@ class Help final : public CLI::Formatter {
     return lines(fmt::format("  {:<28}", sub->get_name()), sub->get_description(), 30);
   }
 
-  // Examples, which begin with a blank, stay as they are.
+  // Examples, which begin with a blank, stay as they are; a table's rows go on in their column.
   std::string make_footer(const CLI::App* app) const override {
     std::string out;
     std::istringstream footer(app->get_footer());
     for (std::string line; std::getline(footer, line);) {
-      out += line.starts_with(' ') ? line + "\n" : lines("", line, 0);
+      const std::size_t gap = line.find("  ", line.find_first_not_of(' '));
+      const std::size_t text = std::min(line.find_first_not_of(' ', gap), line.size());
+      if (!line.starts_with(' ')) {
+        out += lines("", line, 0);
+      } else if (gap == line.npos || line[text] == '#') {
+        out += line + "\n";
+      } else {
+        out += lines(line.substr(0, text), line.substr(text), text);
+      }
     }
     return out;
   }
@@ -122,7 +132,14 @@ std::string given(const std::string& text) { return text.empty() ? "is empty" : 
 
 template <class Number>
 CLI::Validator range(Number min, Number max) {
-  return CLI::Range(min, max).description(fmt::format("{} to {}", min, max));
+  const std::string bounds = fmt::format("{} to {}", min, max);
+  const auto mistake = [min, max, bounds](const std::string& text) -> std::string {
+    Number value{};
+    if (CLI::detail::lexical_cast(text, value) && min <= value && value <= max) return {};
+    return fmt::format("expected a {} from {}, given '{}'",
+                       std::is_integral_v<Number> ? "whole number" : "number", bounds, text);
+  };
+  return CLI::Validator(mistake, bounds);
 }
 
 }  // namespace
@@ -136,17 +153,23 @@ int code_of(const Ending& ending) {
 
 std::string whole_number(const std::string& text) {
   if (is_digits(text)) return {};
-  return fmt::format("expected a number of 0 or more, given '{}'", text);
+  return fmt::format("expected a whole number of 0 or more, given '{}'", text);
 }
 
 std::string at_least_one(const std::string& text) {
   if (is_digits(text) && text.find_first_not_of('0') != text.npos) return {};
-  return fmt::format("expected a number of 1 or more, given '{}'", text);
+  return fmt::format("expected a whole number of 1 or more, given '{}'", text);
 }
 
 Option& Option::one_of(std::vector<std::string> values) {
-  option_->check(CLI::IsMember(std::move(values)));
-  return *this;
+  const std::string shown = fmt::format("{{{}}}", fmt::join(values, ","));
+  return check(
+      [values = std::move(values)](const std::string& text) -> std::string {
+        if (std::find(values.begin(), values.end(), text) != values.end()) return {};
+        return fmt::format("expected one of {}; given '{}'{}", fmt::join(values, ", "), text,
+                           reflect::did_you_mean(text, values));
+      },
+      shown);
 }
 
 Option& Option::between(int min, int max) {
@@ -360,6 +383,15 @@ int Command::parse_and_run(int argc, char** argv) {
     return innermost().complain(error.what(), error.excerpt());
   } catch (const CLI::ExtrasError&) {
     return innermost().complain_about_extras();
+  } catch (const CLI::ConversionError& error) {
+    // "Could not convert: --id = x"; all that is converted is a number.
+    const std::string what = error.what();
+    const std::size_t option = what.find("--");
+    const std::size_t value = what.find(" = ");
+    if (option == what.npos || value == what.npos) return innermost().complain(what);
+    return innermost().complain(fmt::format("{}: expected a number, given '{}'",
+                                            what.substr(option, value - option),
+                                            what.substr(value + 3)));
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app_->exit(error);  // --help, --version
     return innermost().complain(error.what());

@@ -1,7 +1,10 @@
 #include "tools/cli/reading.h"
 
+#include <fmt/format.h>
+
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "codec/containers/link_record.h"
@@ -56,10 +59,13 @@ std::optional<UserLink> parse_user_link(const std::string& text) {
 }
 
 std::string check_user_link(const std::string& text) {
-  return parse_user_link(text) ? ""
-                               : "expected a link type from 147 to 162 and what it is, as in "
-                                 "149=radio-fcs; given '" +
-                                     text + "'";
+  if (parse_user_link(text)) return {};
+  std::string names;
+  for (const LinkName& known : kLinks)
+    names += (names.empty() ? "" : ", ") + std::string(known.name);
+  return fmt::format(
+      "expected a link type from 147 to 162 and what it is ({}), as in 149=radio-fcs; given '{}'",
+      names, text);
 }
 
 InputFormat find_format(std::string_view name) {

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "codec/text/shell.h"
+#include "codec/text/text.h"
 #include "conformance/check/input/read_trace.h"
 #include "tools/cli/color.h"
 #include "tools/cli/terminal.h"
@@ -123,8 +124,9 @@ std::vector<report::FrameRange> frame_ranges(const CheckOptions& options) {
       range.file = 0;
     }
     if (range.file >= options.input.files.size()) {
-      throw cli::UsageError(
-          "--frames", fmt::format("'{}': there are {} files", text, options.input.files.size()));
+      throw cli::UsageError("--frames",
+                            fmt::format("'{}': the run has {}", text,
+                                        text::counted(options.input.files.size(), "file")));
     }
     for (const report::FrameRange& other : out) {
       if (other.file == range.file) {

@@ -26,7 +26,7 @@ struct ConvertOptions {
 constexpr const char* kConvertFooter =
     "What the target cannot hold is reported on stderr. pcap holds one link type, that of the "
     "first\n"
-    "packet; --only chooses among serial and radio.\n"
+    "packet; --only hdlc and --only radio choose.\n"
     "Exit codes: 0 converted, 64 usage, 66 an input is missing or damaged (what can be read of\n"
     "all inputs is written; a target is made only if that is something), 74 output cannot be\n"
     "written.";

@@ -334,7 +334,10 @@ void add_decode(cli::Command& app) {
   auto options = std::make_shared<DecodeOptions>();
   cli::add_input_options(command, options->input);
   cli::add_live_options(command, options->input);
-  command.add_option("--format", options->format, "Print text, jsonl (rubric.decode/1) or csv")
+  command
+      .add_option("--format", options->format,
+                  "Print text, jsonl (rubric.decode/1) or csv, which needs "
+                  "--fields to have a message's fields")
       .one_of({"text", "jsonl", "csv"});
   command.add_option("--filter", options->filter,
                      "Print only frames for which this holds: message==updates && src.devid==4");

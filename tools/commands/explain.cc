@@ -177,7 +177,8 @@ int explain_bytes(const ExplainOptions& options, const Protocol& protocol,
   reflect::Frame frame;
   reflect::FrameDecoder(protocol, message).decode(given->packet, frame);
   cli::OtherSpecs(protocol).look(frame);
-  out = fmt::format("Taken as {}, {} bytes.\n\n", given->what, given->bytes.size());
+  out =
+      fmt::format("Taken as {}, {}.\n\n", given->what, text::counted(given->bytes.size(), "byte"));
   out += explain::explain_frame(frame);
   return frame.malformed() ? cli::kExitFindings : cli::kExitClean;
 }

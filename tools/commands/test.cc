@@ -132,8 +132,9 @@ std::vector<suite::SuiteCase> selected(const TestOptions& options, const suite::
   if (!options.role.empty()) {
     const auto role = trace::find_role(options.role);
     if (!role) {
-      throw cli::UsageError("--role", fmt::format("{} not in {{{}}}", options.role,
-                                                  fmt::join(trace::role_names(), ",")));
+      throw cli::UsageError("--role",
+                            fmt::format("expected one of {}; given '{}'",
+                                        fmt::join(trace::role_names(), ", "), options.role));
     }
     selection.role = static_cast<machine::Role>(*role);
   }
@@ -148,7 +149,7 @@ std::vector<suite::SuiteCase> selected(const TestOptions& options, const suite::
   try {
     return suite::select(cases, selection);
   } catch (const std::invalid_argument& error) {
-    throw cli::UsageError("selection", error.what());
+    throw cli::UsageError(error.what());
   }
 }
 

@@ -302,6 +302,10 @@ class Inputs(Folder):
         self.assertEqual((code, err), (3, ""))
         self.assertIn("No frames of this protocol: there is nothing to judge.", out)
         self.assertEqual(as_json(beacons)["verdict"], "inconclusive")
+        foreign = self.write("foreign.hex", "00 FF FF 00 03 02 00 52 01 50\n")
+        code, out, _ = check(foreign)
+        self.assertEqual(code, 3)
+        self.assertIn("No frame keeps or breaks a rule of RUBICON;", out)
         empty = self.write("empty", b"")
         code, out, err = check(empty)
         self.assertEqual((code, err), (3, f"rubric: {empty}: is empty\n"))
@@ -374,7 +378,7 @@ class Inputs(Folder):
             ([CLEAN, "--tester", "x"], "expected 0 to 65535"),
             ([CLEAN, "--response", "-1"], "--response"),
             ([CLEAN, "--frames", "5..1"], "--frames"),
-            ([CLEAN, "--frames", "2:1..5"], "there are 1 files"),
+            ([CLEAN, "--frames", "2:1..5"], "the run has 1 file"),
             ([CLEAN, WRONG_SEQ, "--frames", "1..5"], "of which file?"),
             ([CLEAN, "--frames", "1..5", "--frames", "7..8"], "one range for each file"),
             ([CLEAN, "--snifer", "complete"], "did you mean '--sniffer'?"),

@@ -64,9 +64,19 @@ class ExitCodes(ProgramTest):
             ("convert", "x", "--output", "y"): "did you mean '--out'?",
             ("decode", "-filter", "x"): "did you mean '--filter'?",
             ("check", "--spec", "x"): "unknown option --spec\n",
-            ("decode", "--format", "xml"): "--format",
-            ("decode", "--count", "-1"): "--count: expected a number of 1 or more, given '-1'",
-            ("decode", "--count", "0"): "--count: expected a number of 1 or more, given '0'",
+            ("decode", "--format", "xml"):
+                "--format: expected one of text, jsonl, csv; given 'xml'\n",
+            ("decode", "--input-format", "pcpa"): "given 'pcpa' (did you mean 'pcap'?)",
+            ("decode", "--link-type", "149=raido", JOIN): "(serial, sf, radio, radio-fcs, ",
+            ("simulate", "--loss", "5"): "--loss: expected a number from 0 to 1, given '5'",
+            ("simulate", "--motes", "1.5"):
+                "--motes: expected a whole number from 0 to 200, given '1.5'",
+            ("run", "mote", "--id", "x"): "--id: expected a number, given 'x'\n",
+            ("check", "--frames", "3:1..5", JOIN): "'3:1..5': the run has 1 file\n",
+            ("test", "--target", "machine", "--cases", "zz*"): "rubric test: no case is called",
+            ("decode", "--count", "-1"):
+                "--count: expected a whole number of 1 or more, given '-1'",
+            ("decode", "--count", "0"): "--count: expected a whole number of 1 or more, given '0'",
             ("decode", ""): "FILE: is empty",
             ("decode", "--filter", "message==updats"): "did you mean 'updates'?",
             ("decode", "--filter", "(index"): "expected ')'",
@@ -114,6 +124,9 @@ class ExitCodes(ProgramTest):
         done = subprocess.run(f"{RUBRIC} decode --help | head -c 1", shell=True, check=False,
                               capture_output=True)
         self.assertEqual(done.stderr, b"")  # A reader that has enough is no fault.
+
+    def test_tables_in_help_are_broken(self):
+        self.assertLessEqual(max(map(len, lines(run("explore", "--help")))), 100)
 
     def test_a_capture_of_no_packets_says_so(self):
         header = bytes.fromhex("d4c3b2a1 0200 0400 00000000 00000000 ffff0000 c3000000")

@@ -538,7 +538,7 @@ class Simulate(ProgramTest):
     def test_a_seed_has_no_sign(self):
         for seed in ("-1", "0x7", "1.5"):
             self.refused(("simulate", "--seconds", "1", "--seed", seed),
-                         f"--seed: expected a number of 0 or more, given '{seed}'")
+                         f"--seed: expected a whole number of 0 or more, given '{seed}'")
         self.assertEqual(rubric("simulate", "--seconds", "1", "--seed", str(2**64 - 1))[0], 0)
 
 

@@ -166,7 +166,7 @@ class Explore(Folder):
                             (["--flaw", "misread_acks"], "--scope full"),
                             (["--profile", "papr"], "did you mean 'paper'"),
                             (["--motes", "9"], "--motes"),
-                            (["--max-states", "-1"], "--max-states: expected a number of 0"),
+                            (["--max-states", "-1"], "--max-states: expected a whole number of 0"),
                             (["--motes", "4", "--sinks", "4"], "at most 6"),
                             (["--lss"], "did you mean '--loss'")]:
             with self.subTest(words=words):

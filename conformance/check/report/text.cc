@@ -101,6 +101,12 @@ class TextReport {
     if (story_.report.frames == 0) {
       out_ += text::wrapped(text::kIndent, "No frames of this protocol: there is nothing to judge.",
                             options_.width);
+    } else if (story_.report.exercised.empty() && story_.report.findings.empty()) {
+      out_ +=
+          text::wrapped(text::kIndent,
+                        "No frame keeps or breaks a rule of RUBICON; 'rubric decode' shows what "
+                        "they hold.",
+                        options_.width);
     }
     if (!story_.run.has_time) {
       out_ +=

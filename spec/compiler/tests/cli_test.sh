@@ -23,6 +23,19 @@ good=spec/wire/tinyos.ksy
 bad=spec/compiler/tests/bad/many_mistakes.ksy
 expect 0 --check $good
 expect 0 --help
+expect 66 --requirements "$out/nothing.yaml" --check $good
+grep -q -- '--requirements names another' "$out/stderr" || { echo "no hint"; failures=1; }
+cat >"$out/lamp.ksy" <<'END'
+meta: {id: lamp, endian: be}
+types:
+  light: {-am-type: 0x2a, -requirement: LAMP, seq: [{id: level, type: u1}]}
+END
+cat >"$out/own.yaml" <<'END'
+- {id: LAMP, level: MUST, clause: "wire, messages", sentence: "A light is a byte.", source: ours}
+END
+expect 0 --requirements "$out/own.yaml" --check "$out/lamp.ksy"
+expect 0 --requirements "$out/own.yaml" --emit cpp,lua --out "$out/lamp" "$out/lamp.ksy"
+grep -q 'no dissector' "$out/stderr" || { echo "a missing dissector is not said"; failures=1; }
 expect 0 --emit tables --out "$out/good" $good
 [ -f "$out/good/codec/generated/tinyos/tables.h" ] || { echo "no tables"; failures=1; }
 expect 0 --emit json --out "$out/json" $good
