@@ -44,9 +44,7 @@ UnitReader::Step PcapReader::file_header(Bytes input) {
   const std::uint32_t magic_be = load_be32(input.data());
   big_endian_ = magic_be == kMagicMicro || magic_be == kMagicNano;
   const std::uint32_t magic = big_endian_ ? magic_be : magic_le;
-  if (magic != kMagicMicro && magic != kMagicNano) {
-    return damage(input.first(kFileHeaderBytes), 0);
-  }
+  if (magic != kMagicMicro && magic != kMagicNano) return damage(input.first(kFileHeaderBytes), 0);
   interface.ticks_per_second = magic == kMagicNano ? 1'000'000'000 : 1'000'000;
   // The upper half of the field is the length of an Ethernet FCS, which is ignored.
   interface.link_type =

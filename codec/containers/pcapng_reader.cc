@@ -66,9 +66,7 @@ void PcapngReader::section(Bytes bytes, PacketSink sink) {
   supported_ = true;
   first_interface_ = interfaces_.size();
   snap_lengths_.clear();
-  if (bytes.size() < kSectionHeaderMin) {
-    return deliver_bad_block(bytes, Fault::kContainer, 4, sink);
-  }
+  if (bytes.size() < kSectionHeaderMin) return deliver_bad_block(bytes, Fault::kContainer, 4, sink);
   if (load16(bytes.data() + 12) != kMajorVersion) {
     supported_ = false;
     deliver_bad_block(bytes, Fault::kUnsupported, 12, sink);
@@ -275,9 +273,7 @@ void PcapngReader::end(Bytes rest, PacketSink sink) {
     rest = rest.from(done.used_bytes);
   }
   if (damaged_) deliver_damage(sink);
-  if (!rest.empty() || nothing_at_all) {
-    deliver_bad_block(rest, Fault::kCut, rest.size(), sink);
-  }
+  if (!rest.empty() || nothing_at_all) deliver_bad_block(rest, Fault::kCut, rest.size(), sink);
   final_ = false;
   in_section_ = false;
 }

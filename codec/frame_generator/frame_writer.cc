@@ -198,9 +198,7 @@ class FrameWriter {
       if (g->repeat == Repeat::kCount && is_alone(g->count, f, place)) {
         return behind / element_bytes(*g);
       }
-      if (g->extent == Extent::kSize && is_alone(g->size, f, place)) {
-        return behind;
-      }
+      if (g->extent == Extent::kSize && is_alone(g->size, f, place)) return behind;
     }
     return f.held().max;
   }
@@ -255,9 +253,7 @@ class FrameWriter {
         continue;
       }
       const std::size_t begin = size();
-      if (!call(*f.type, f.arguments, width, place) || size() != begin + width) {
-        return false;
-      }
+      if (!call(*f.type, f.arguments, width, place) || size() != begin + width) return false;
     }
     close_part(part);
     return true;

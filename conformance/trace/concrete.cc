@@ -239,9 +239,7 @@ std::optional<std::pair<std::uint16_t, std::uint16_t>> Concrete::pair(std::strin
 }
 
 Concrete decode(const AmFrame& frame, LinkKind link) {
-  if (!frame.packet.empty()) {
-    return {.name = "*", .frame = frame};
-  }
+  if (!frame.packet.empty()) return {.name = "*", .frame = frame};
   const reflect::Type* type = Schema::get().payload_type(link, frame.type);
   Concrete out;
   if (!type || !decode_as(*type, frame, out)) return decode_raw(frame);

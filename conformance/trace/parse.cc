@@ -51,9 +51,7 @@ NodeHeader parse_node(Scanner& in) {
   node.name = word;
   word = header_word(in);
   const std::optional<Role> role = find_role(word);
-  if (!role) {
-    in.fail_at(word, "expected " + alternatives(role_names()) + ", given " + quoted(word));
-  }
+  if (!role) in.fail_at(word, "expected " + alternatives(role_names()) + ", given " + quoted(word));
   node.role = *role;
   while (!(word = header_word(in)).empty()) {
     if (word == "iut" && !node.iut) {

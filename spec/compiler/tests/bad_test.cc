@@ -22,9 +22,7 @@ std::vector<std::string> shown(const Diagnostics& diagnostics, const std::string
   std::vector<std::string> out;
   for (const Diagnostic& one : diagnostics.sorted()) {
     std::string where = fmt::format("{}:{}: ", one.place.line, one.place.column);
-    if (one.place.file != file) {
-      where = one.place.file.substr(kBadFolder.size()) + ":" + where;
-    }
+    if (one.place.file != file) where = one.place.file.substr(kBadFolder.size()) + ":" + where;
     out.push_back(where + one.text);
   }
   return out;

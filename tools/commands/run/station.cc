@@ -105,9 +105,7 @@ void Station::open_radio() {
   user.heard = [this](Bytes packet) { heard(Line::kRadio, packet); };
   user.sent = [this](bool acked) {
     catch_up();
-    if (awaits_link_ack_) {
-      keeper_.given(names_, machine::SendDone{machine::Link::kRadio, acked});
-    }
+    if (awaits_link_ack_) keeper_.given(names_, machine::SendDone{machine::Link::kRadio, acked});
     awaits_link_ack_ = false;
     layer_->sent(Line::kRadio, acked);
   };
