@@ -204,9 +204,7 @@ class Monitor(LiveTest):
                 ((), 64, "SOURCE"), (("run.pcapng",), 64, "expected a line such as"),
                 (("mqtt://me:secret@x",), 64, "into a file or the environment"),
                 (("sf@127.0.0.1:1",), 66, "refused")):
-            got, _, err = rubric("monitor", *arguments)
-            self.assertEqual(got, code, err)
-            self.assertIn(text, err)
+            self.shows(("monitor", *arguments), code=code, err=text)
 
 
 if __name__ == "__main__":
