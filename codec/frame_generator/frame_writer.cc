@@ -22,7 +22,6 @@ using reflect::Extent;
 using reflect::Field;
 using reflect::Interpretation;
 using reflect::Kind;
-using reflect::Op;
 using reflect::Repeat;
 using reflect::Type;
 

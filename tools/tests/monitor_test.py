@@ -21,7 +21,7 @@ from check_live_testing import BROKEN_LINE, data
 from live_testing import Forwarder, LiveTest, Running
 from run_test import Node
 from serial_testing import PATIENCE_S, held_port
-from testing import RUBRIC, rubric
+from testing import RUBRIC
 
 # A reading of long ago.
 OLD = '{"creator":"11:null","time":"2020-01-31T23:59:59.123Z","data":{"light":{"raw":9}}}'

@@ -10,7 +10,6 @@
 #include <iterator>
 #include <mutex>
 #include <new>
-#include <string_view>
 #include <thread>
 #include <utility>
 
