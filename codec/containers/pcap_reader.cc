@@ -27,8 +27,7 @@ UnitReader::Step PcapReader::step(Bytes input, PacketSink sink) {
   if (captured > kCaptureRecordMax) return damage(input.first(kRecordHeaderBytes), 8);
   if (input.size() < kRecordHeaderBytes + captured) return want(kRecordHeaderBytes + captured);
   const Interface& interface = interfaces_[0];
-  Packet packet;
-  packet.offset_bytes = offset() + kRecordHeaderBytes;
+  Packet packet{.offset_bytes = offset() + kRecordHeaderBytes};
   packet.time_ns =
       time_ns_of_ticks(load32(header) * interface.ticks_per_second + load32(header + 4), interface);
   decode_record(input.sub(kRecordHeaderBytes, captured), load32(header + 12), interface.link_type,

@@ -153,8 +153,7 @@ void PcapngReader::packet_block(Bytes bytes, std::uint32_t type, PacketSink sink
 }
 
 void PcapngReader::deliver(Bytes bytes, const Captured& captured, PacketSink sink) {
-  Packet packet;
-  packet.interface_id = static_cast<std::uint32_t>(first_interface_ + captured.interface);
+  Packet packet{.interface_id = static_cast<std::uint32_t>(first_interface_ + captured.interface)};
   const Interface& interface = interfaces_[packet.interface_id];
   packet.offset_bytes = offset() + captured.data_at;
   if (captured.ticks) packet.time_ns = time_ns_of_ticks(*captured.ticks, interface);

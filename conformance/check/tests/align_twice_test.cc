@@ -174,8 +174,7 @@ std::set<std::string> blamed_in(const Report& report) {
 TEST(AlignTwice, TwoSniffersOnOtherClocksThatBothMissFrames) {
   std::size_t lines = 0;
   for (const char* name : {"a_join_data", "b_reliable", "c_two_islands", "f_synaptic"}) {
-    SerialClock clock;
-    clock.ahead_s = -777;
+    SerialClock clock{.ahead_s = -777};
     const Apart apart = take_apart(capture(name), clock);
     clock.base_s += 2;
     Part first{"radio", frames_of(apart.parts[0].bytes, [](auto i) { return i % 5 != 0; }), {0}};

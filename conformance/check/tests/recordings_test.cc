@@ -196,8 +196,7 @@ TEST(AlignLogs, NobodyIsBlamedForTheEndOfALog) {
         }
         const check::Run run = reader.finish();
         EXPECT_EQ(broken_in(judge(run, {})), "") << scenario << " " << cut << " " << head;
-        Options cold;
-        cold.start_cold = !head;
+        Options cold{.start_cold = !head};
         EXPECT_EQ(broken_in(judge(run, cold)), "") << scenario << " " << cut << " " << head;
       }
     }

@@ -37,8 +37,7 @@ Model catalogue() {
     EXPECT_EQ(diagnostics.print(), "");
     return model.requirements;
   }();
-  Model model;
-  model.requirements = rules;
+  Model model{.requirements = rules};
   return model;
 }
 

@@ -49,8 +49,7 @@ std::string name_of(node::Role role, std::uint16_t island, std::uint16_t id) {
 }
 
 trace::NodeHeader header_of(const StationSetup& setup) {
-  trace::NodeHeader header;
-  header.name = setup.name;
+  trace::NodeHeader header{.name = setup.name};
   const bool mote = setup.role == node::Role::kMote;
   const bool base = setup.role == node::Role::kBaseStation;
   header.role = mote ? trace::Role::kMote : base ? trace::Role::kBaseStation : trace::Role::kSink;
