@@ -357,7 +357,8 @@ Line frame_line(std::int64_t ticks, std::string_view node, Op op, std::string_vi
     return id == kAmAll ? Value::names("all") : Value::of(id);
   };
   const std::vector<std::uint8_t> packet = packet_of(frame);
-  Line line{.time = Time::at(ticks), .node = std::string(node), .op = op, .link = link};
+  Line line{
+      .time = Time::at(ticks), .node = std::string(node), .op = op, .link = std::string(link)};
   if (frame.packet.empty()) line.am = AmAddresses{am(frame.src), am(frame.dest)};
   line.message = std::move(seen.message);
   line.bytes = std::string(text_of({packet.data(), packet.size()}));
