@@ -16,7 +16,8 @@ inline const std::string kBadFolder = "spec/compiler/tests/bad/";
 /// comments; in traces `;` begins them:
 ///     # expect: line:column: text        (at the top; or another file before it)
 ///     #   continued
-///       # expect: column: text           (indented: of the next line that is no comment)
+///       # expect: column: text           (indented: of the next line that is no comment; its
+///         text writes a line further up as {-lines})
 inline std::vector<std::string> expected_in(const std::string& file) {
   std::vector<std::string> out;
   std::vector<std::size_t> unplaced;
@@ -26,7 +27,14 @@ inline std::vector<std::string> expected_in(const std::string& file) {
     const std::size_t at = std::min(line.find_first_not_of(' '), line.size());
     const std::string text = line.substr(std::min(at + 1, line.size()));
     if (line.find_first_of("#;", at) != at) {
-      for (const std::size_t one : unplaced) out[one] = fmt::format("{}:{}", number, out[one]);
+      for (const std::size_t one : unplaced) {
+        std::string& text_of = out[one] = fmt::format("{}:{}", number, out[one]);
+        if (const std::size_t up = text_of.find("{-"); up != text_of.npos) {
+          const std::size_t end = text_of.find('}', up);
+          const int lines = std::stoi(text_of.substr(up + 1));
+          text_of.replace(up, end + 1 - up, std::to_string(number + lines));
+        }
+      }
       unplaced.clear();
     } else if (text.starts_with(" expect: ")) {
       if (at > 0) unplaced.push_back(out.size());

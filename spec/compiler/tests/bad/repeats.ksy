@@ -77,3 +77,13 @@ types:
     seq:
       # expect: 35: repeat: expr without a count; repeat-expr: was expected
       - {id: a, type: u1, repeat: expr}
+  repeat_of_nothing:
+    -requirement: WIRE-DATA
+    seq:
+      - {id: n, type: u4}
+      # expect: 36: 'a' repeats what takes no byte; an element of a byte or more was expected
+      - {id: a, type: two, repeat: expr, repeat-expr: n}
+  # expect: 3: type 'two' without fields; seq: with a field was expected
+  two:
+    -requirement: WIRE-DATA
+    seq: []
