@@ -35,8 +35,7 @@ std::uint16_t crc(Bytes bytes) {
 }  // namespace
 
 HdlcReader::HdlcReader(const ReaderOptions& options, CpuPath path) : path_(path) {
-  Interface stream;
-  stream.name = options.interface_name;
+  Interface stream{.name = options.interface_name};
   interfaces_.push_back(stream);
   packet_.framing = Framing::kHdlc;
   packet_.direction = options.direction;

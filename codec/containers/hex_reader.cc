@@ -118,8 +118,7 @@ bool is_noise(Bytes line) {
 
 HexReader::HexReader(const ReaderOptions& options, bool is_log)
     : options_(options), is_log_(is_log) {
-  Interface stream;
-  stream.name = options.interface_name;
+  Interface stream{.name = options.interface_name};
   interfaces_.push_back(stream);
 }
 

@@ -223,12 +223,8 @@ void append_tap_header(const RadioFacts& facts, bool has_fcs, std::string& out) 
     const auto channel = static_cast<std::uint64_t>(facts.channel & 0xFFFF);
     put_tap_fact(kTapChannel, std::uint64_t{facts.page} << 16 | channel, 3, out);
   }
-  if (facts.slot != kAbsent) {
-    put_tap_fact(kTapSlot, static_cast<std::uint64_t>(facts.slot), 8, out);
-  }
-  if (facts.lqi != kAbsent) {
-    put_tap_fact(kTapLqi, static_cast<std::uint64_t>(facts.lqi), 1, out);
-  }
+  if (facts.slot != kAbsent) put_tap_fact(kTapSlot, static_cast<std::uint64_t>(facts.slot), 8, out);
+  if (facts.lqi != kAbsent) put_tap_fact(kTapLqi, static_cast<std::uint64_t>(facts.lqi), 1, out);
   out[begin + 2] = static_cast<char>(out.size() - begin);
 }
 

@@ -27,8 +27,7 @@ UnitReader::Step PcapReader::step(Bytes input, PacketSink sink) {
   if (captured > kCaptureRecordMax) return damage(input.first(kRecordHeaderBytes), 8);
   if (input.size() < kRecordHeaderBytes + captured) return want(kRecordHeaderBytes + captured);
   const Interface& interface = interfaces_[0];
-  Packet packet;
-  packet.offset_bytes = offset() + kRecordHeaderBytes;
+  Packet packet{.offset_bytes = offset() + kRecordHeaderBytes};
   packet.time_ns =
       time_ns_of_ticks(load32(header) * interface.ticks_per_second + load32(header + 4), interface);
   decode_record(input.sub(kRecordHeaderBytes, captured), load32(header + 12), interface.link_type,
@@ -44,9 +43,7 @@ UnitReader::Step PcapReader::file_header(Bytes input) {
   const std::uint32_t magic_be = load_be32(input.data());
   big_endian_ = magic_be == kMagicMicro || magic_be == kMagicNano;
   const std::uint32_t magic = big_endian_ ? magic_be : magic_le;
-  if (magic != kMagicMicro && magic != kMagicNano) {
-    return damage(input.first(kFileHeaderBytes), 0);
-  }
+  if (magic != kMagicMicro && magic != kMagicNano) return damage(input.first(kFileHeaderBytes), 0);
   interface.ticks_per_second = magic == kMagicNano ? 1'000'000'000 : 1'000'000;
   // The upper half of the field is the length of an Ethernet FCS, which is ignored.
   interface.link_type =

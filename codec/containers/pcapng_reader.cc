@@ -66,9 +66,7 @@ void PcapngReader::section(Bytes bytes, PacketSink sink) {
   supported_ = true;
   first_interface_ = interfaces_.size();
   snap_lengths_.clear();
-  if (bytes.size() < kSectionHeaderMin) {
-    return deliver_bad_block(bytes, Fault::kContainer, 4, sink);
-  }
+  if (bytes.size() < kSectionHeaderMin) return deliver_bad_block(bytes, Fault::kContainer, 4, sink);
   if (load16(bytes.data() + 12) != kMajorVersion) {
     supported_ = false;
     deliver_bad_block(bytes, Fault::kUnsupported, 12, sink);
@@ -155,8 +153,7 @@ void PcapngReader::packet_block(Bytes bytes, std::uint32_t type, PacketSink sink
 }
 
 void PcapngReader::deliver(Bytes bytes, const Captured& captured, PacketSink sink) {
-  Packet packet;
-  packet.interface_id = static_cast<std::uint32_t>(first_interface_ + captured.interface);
+  Packet packet{.interface_id = static_cast<std::uint32_t>(first_interface_ + captured.interface)};
   const Interface& interface = interfaces_[packet.interface_id];
   packet.offset_bytes = offset() + captured.data_at;
   if (captured.ticks) packet.time_ns = time_ns_of_ticks(*captured.ticks, interface);
@@ -275,9 +272,7 @@ void PcapngReader::end(Bytes rest, PacketSink sink) {
     rest = rest.from(done.used_bytes);
   }
   if (damaged_) deliver_damage(sink);
-  if (!rest.empty() || nothing_at_all) {
-    deliver_bad_block(rest, Fault::kCut, rest.size(), sink);
-  }
+  if (!rest.empty() || nothing_at_all) deliver_bad_block(rest, Fault::kCut, rest.size(), sink);
   final_ = false;
   in_section_ = false;
 }

@@ -8,8 +8,7 @@ constexpr Error kSfSound{Fault::kNone, 0, ReqId::kNone};
 }  // namespace
 
 SfReader::SfReader(const ReaderOptions& options) {
-  Interface stream;
-  stream.name = options.interface_name;
+  Interface stream{.name = options.interface_name};
   interfaces_.push_back(stream);
   packet_.framing = Framing::kSf;
   packet_.direction = options.direction;

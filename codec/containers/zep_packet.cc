@@ -188,8 +188,7 @@ Result<ZepPacket> parse_zep(Bytes datagram) {
     if (at[i] != static_cast<std::uint8_t>("EX"[i])) return zep_fault(Fault::kUnexpected, i);
   }
   if (size < 4) return zep_fault(Fault::kTruncated, size);
-  ZepPacket zep;
-  zep.version = at[2];
+  ZepPacket zep{.version = at[2]};
   if (zep.version != 1 && zep.version != 2) return zep_fault(Fault::kUnexpected, 2);
   const bool v2 = zep.version == 2;
   if (v2) zep.type = static_cast<ZepPacket::Type>(at[3]);

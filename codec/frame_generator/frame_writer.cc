@@ -22,7 +22,6 @@ using reflect::Extent;
 using reflect::Field;
 using reflect::Interpretation;
 using reflect::Kind;
-using reflect::Op;
 using reflect::Repeat;
 using reflect::Type;
 
@@ -198,9 +197,7 @@ class FrameWriter {
       if (g->repeat == Repeat::kCount && is_alone(g->count, f, place)) {
         return behind / element_bytes(*g);
       }
-      if (g->extent == Extent::kSize && is_alone(g->size, f, place)) {
-        return behind;
-      }
+      if (g->extent == Extent::kSize && is_alone(g->size, f, place)) return behind;
     }
     return f.held().max;
   }
@@ -255,9 +252,7 @@ class FrameWriter {
         continue;
       }
       const std::size_t begin = size();
-      if (!call(*f.type, f.arguments, width, place) || size() != begin + width) {
-        return false;
-      }
+      if (!call(*f.type, f.arguments, width, place) || size() != begin + width) return false;
     }
     close_part(part);
     return true;

@@ -7,7 +7,6 @@
 #include <cstdio>
 #include <map>
 #include <set>
-#include <string>
 #include <string_view>
 
 #include "codec/frame_generator/known_protocols.h"

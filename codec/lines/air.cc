@@ -64,8 +64,7 @@ bool Air::is_unanswered() const {
 }
 
 std::string Air::greeting() {
-  ZepPacket ack;
-  ack.type = ZepPacket::Type::kAck;
+  ZepPacket ack{.type = ZepPacket::Type::kAck};
   std::string datagram;
   append_zep(ack, datagram);
   return datagram;

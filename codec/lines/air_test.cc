@@ -17,9 +17,7 @@ constexpr std::int64_t kMs = 1'000'000;
 // A frame of one byte, which names it.
 std::string frame_of(std::uint8_t name, std::int64_t time_ns) {
   const std::uint8_t frame[] = {name, 0, 0};
-  ZepPacket zep;
-  zep.time_ns = time_ns;
-  zep.frame = Bytes(frame, sizeof frame);
+  ZepPacket zep{.time_ns = time_ns, .frame = Bytes(frame, sizeof frame)};
   std::string datagram;
   append_zep(zep, datagram);
   return datagram;
@@ -66,8 +64,7 @@ TEST(Air, AHubForgetsWhoHasGone) {
   Descriptor member(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   const SocketAddress to = resolve("127.0.0.1", hub.port(), true).front();
   ASSERT_EQ(::connect(member.get(), to.get(), to.size_bytes), 0);
-  ZepPacket ack;
-  ack.type = ZepPacket::Type::kAck;
+  ZepPacket ack{.type = ZepPacket::Type::kAck};
   std::string greeting;
   append_zep(ack, greeting);
   const auto greets = [&] {

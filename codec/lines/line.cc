@@ -37,8 +37,7 @@ Address serial(std::string_view text, std::string_view rest) {
 }
 
 Address network(Address::Kind kind, std::string_view text, std::string_view rest) {
-  Address out;
-  out.kind = kind;
+  Address out{.kind = kind};
   try {
     if (rest.find(':') == rest.npos) throw std::invalid_argument("no port");
     out.at = lines::read_host_port(rest);
@@ -50,9 +49,7 @@ Address network(Address::Kind kind, std::string_view text, std::string_view rest
 
 // A port 0 is any that is free.
 Address air(std::string_view text, std::string_view rest) {
-  Address out;
-  out.kind = Address::Kind::kAir;
-  out.name = text;
+  Address out{.kind = Address::Kind::kAir, .name = std::string(text)};
   if (rest == "0") {
     out.at = {"127.0.0.1", 0};
     return out;

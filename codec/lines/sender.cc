@@ -94,9 +94,7 @@ Sender::Result Sender::send(Bytes packet) {
   try {
     const HostLink::Submitted submitted = link_.submit(packet, steady_clock::now());
     if (submitted != HostLink::Submitted::kTaken) throw std::logic_error("no packet of this line");
-    while (!outcome_ && !stop_requested()) {
-      step(link_.next().value_or(steady_clock::now()), -1);
-    }
+    while (!outcome_ && !stop_requested()) step(link_.next().value_or(steady_clock::now()), -1);
   } catch (const Broken& error) {
     broken = error.what();
   }

@@ -142,9 +142,7 @@ struct WriteCase {
 TEST(Write, NamesTheRuleThatAValueBreaks) {
   static const std::uint8_t kBytes[120] = {};
   const auto with = [](std::uint8_t reliable, std::size_t payload) {
-    NetMsg value;
-    value.reliable = reliable;
-    value.payload = Bytes(kBytes, payload);
+    NetMsg value{.reliable = reliable, .payload = Bytes(kBytes, payload)};
     return value;
   };
   const WriteCase kCases[] = {
@@ -183,8 +181,7 @@ TEST(Write, LengthsOfOtherFieldsMustAgree) {
 }
 
 TEST(Write, ArraysAreWrittenAsFarAsTheyCount) {
-  LearningOutput output;
-  output.type = AmType::kLearningOutput;
+  LearningOutput output{.type = AmType::kLearningOutput};
   ASSERT_TRUE(output.output.push(1.0F));
   ASSERT_TRUE(output.output.push(-2.0F));
   std::uint8_t out[98];

@@ -17,8 +17,7 @@ const machine::NamedProfile& profile_of(bool deployed) {
 
 Terms terms_of(const Options& options, const trace::Statement& own) {
   const trace::Statement stated = joined(options.stated, own);
-  Terms out;
-  out.profile = profile_of(options.deployed).profile;
+  Terms out{.profile = profile_of(options.deployed).profile};
   events::state(out.profile, stated);
   out.response_us = options.response_us.value_or(machine::us_of(out.profile.response_ticks));
   // A profile without a timeout describes its nodes, not how long others wait (decision 110).

@@ -79,8 +79,7 @@ class Observer {
     History& h = history_;
     if (std::holds_alternative<machine::Reboot>(step_.event) ||
         std::holds_alternative<machine::PowerOff>(step_.event)) {
-      History fresh;
-      fresh.acked = std::move(h.acked);
+      History fresh{.acked = std::move(h.acked)};
       h = std::move(fresh);
       return;
     }

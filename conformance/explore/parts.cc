@@ -132,9 +132,7 @@ std::optional<Trigger> listing_trigger(const State& state, const Given& given) {
     return Trigger{"join_request", room};
   }
   if (message.name != "ack_join" || half_at(message, "src", 1) != kMote) return std::nullopt;
-  if (half_at(message, "dest", 0) != state.island) {
-    return Trigger{"ack_join", "for another island"};
-  }
+  if (half_at(message, "dest", 0) != state.island) return Trigger{"ack_join", "for another island"};
   const std::int64_t number = number_at(message, "seq_num");
   const machine::Admission* const stored = pending != nullptr ? pending : member;
   if (stored == nullptr) return Trigger{"ack_join", "for its island"};

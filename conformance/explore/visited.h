@@ -29,9 +29,7 @@ class Visited {
       std::uint64_t there = slots_[i].load(std::memory_order_relaxed);
       if (there == key) return false;
       if (there != 0) continue;
-      if (slots_[i].compare_exchange_strong(there, key, std::memory_order_relaxed)) {
-        return true;
-      }
+      if (slots_[i].compare_exchange_strong(there, key, std::memory_order_relaxed)) return true;
       if (there == key) return false;
     }
   }

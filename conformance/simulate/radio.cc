@@ -175,9 +175,7 @@ bool Radio::receive(const OnAir& frame, const Reception& reception) {
   if (frame.is_ack) {
     const bool awaited = to.awaited == frame.dsn;
     if (!awaited || reception.destroyed || !user_.listens(*to.node)) return false;
-    if (!random_.chance(faults(stations_[frame.sender], to).loss)) {
-      finish(reception.station, true);
-    }
+    if (!random_.chance(faults(stations_[frame.sender], to).loss)) finish(reception.station, true);
     return false;
   }
   const bool broadcast = frame.am.dest == machine::kAmBroadcast;

@@ -26,9 +26,7 @@ class Notes final : public Recorder {
     std::vector<std::uint8_t> bytes;
   };
   void given(Micros time_us, NodeId node, const machine::Event& event) override {
-    if (std::holds_alternative<machine::Heard>(event)) {
-      heard_us.push_back({node, time_us});
-    }
+    if (std::holds_alternative<machine::Heard>(event)) heard_us.push_back({node, time_us});
     text += std::to_string(time_us) + '<' + std::to_string(node) + ' ' +
             std::to_string(event.index()) + '\n';
   }

@@ -239,9 +239,7 @@ std::optional<std::pair<std::uint16_t, std::uint16_t>> Concrete::pair(std::strin
 }
 
 Concrete decode(const AmFrame& frame, LinkKind link) {
-  if (!frame.packet.empty()) {
-    return {.name = "*", .frame = frame};
-  }
+  if (!frame.packet.empty()) return {.name = "*", .frame = frame};
   const reflect::Type* type = Schema::get().payload_type(link, frame.type);
   Concrete out;
   if (!type || !decode_as(*type, frame, out)) return decode_raw(frame);
@@ -359,11 +357,8 @@ Line frame_line(std::int64_t ticks, std::string_view node, Op op, std::string_vi
     return id == kAmAll ? Value::names("all") : Value::of(id);
   };
   const std::vector<std::uint8_t> packet = packet_of(frame);
-  Line line;
-  line.time = Time::at(ticks);
-  line.node = node;
-  line.op = op;
-  line.link = link;
+  Line line{
+      .time = Time::at(ticks), .node = std::string(node), .op = op, .link = std::string(link)};
   if (frame.packet.empty()) line.am = AmAddresses{am(frame.src), am(frame.dest)};
   line.message = std::move(seen.message);
   line.bytes = std::string(text_of({packet.data(), packet.size()}));

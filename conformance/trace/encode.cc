@@ -232,8 +232,7 @@ class Builder {
     if (range && value.text.empty()) return Value::of(value.number);
     if (!range && !value.is(Value::Kind::kAny) && !value.is(Value::Kind::kVariable)) {
       Value copy = value;
-      Slot item;
-      item.domain = slot.kind == Slot::Kind::kList ? slot.domain : Domain::devid();
+      Slot item{.domain = slot.kind == Slot::Kind::kList ? slot.domain : Domain::devid()};
       for (Value& one : copy.items) one = sample(one, item);
       return copy;
     }

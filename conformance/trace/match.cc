@@ -331,9 +331,7 @@ Match match(const Message& pattern, const Concrete& seen, Bindings& bindings) {
 }
 
 Value substituted(const Value& value, const Bindings& bindings, Place place) {
-  if (value.is(Value::Kind::kAny)) {
-    throw TraceError(place, "expected a value, given '*'");
-  }
+  if (value.is(Value::Kind::kAny)) throw TraceError(place, "expected a value, given '*'");
   if (value.is(Value::Kind::kRange) && !value.text.empty() && value.number == value.max) {
     const Value* bound = bindings.find(value.text);
     if (!bound || !bound->is(Value::Kind::kNumber)) {

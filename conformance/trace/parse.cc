@@ -51,9 +51,7 @@ NodeHeader parse_node(Scanner& in) {
   node.name = word;
   word = header_word(in);
   const std::optional<Role> role = find_role(word);
-  if (!role) {
-    in.fail_at(word, "expected " + alternatives(role_names()) + ", given " + quoted(word));
-  }
+  if (!role) in.fail_at(word, "expected " + alternatives(role_names()) + ", given " + quoted(word));
   node.role = *role;
   while (!(word = header_word(in)).empty()) {
     if (word == "iut" && !node.iut) {
@@ -340,8 +338,7 @@ std::string Parsed::errors() const {
 }
 
 Parsed parse_syntax(std::string_view text, std::string_view file_name) {
-  Parsed parsed;
-  parsed.file_name = file_name;
+  Parsed parsed{.file_name = std::string(file_name)};
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   Parser(parsed).run(text);
   return parsed;
@@ -355,8 +352,7 @@ Parsed parse(std::string_view text, std::string_view file_name) {
 }
 
 Parsed each_line(std::string_view text, std::string_view file_name, const TakeLine& take) {
-  Parsed parsed;
-  parsed.file_name = file_name;
+  Parsed parsed{.file_name = std::string(file_name)};
   check_as_read(parsed, [&](Listener& checker) {
     CheckedLines lines(parsed, checker, take);
     Parser(parsed, &lines).run(text);

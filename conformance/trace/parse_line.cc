@@ -266,9 +266,7 @@ Message parse_message(Scanner& in) {
   const std::string_view name = in.until(
       [](char c) { return c == ' ' || c == '\t' || c == '(' || c == '[' || c == ';' || c == '|'; });
   if (name.empty()) in.fail("expected a message");
-  if (name != "*" && !is_name(name)) {
-    in.fail_at(name, "expected a message, given " + quoted(name));
-  }
+  if (name != "*" && !is_name(name)) in.fail_at(name, "expected a message, given " + quoted(name));
   message.name = name;
   if (in.peek() == '(') parse_fields(in, message);
   return message;

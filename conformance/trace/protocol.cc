@@ -139,9 +139,7 @@ class AppReader {
 
   std::string word(const YAML::Node& node) const {
     const std::string out = text(node);
-    if (!is_name(out)) {
-      fail(node, "expected a name of letters, digits and _, given " + quoted(out));
-    }
+    if (!is_name(out)) fail(node, "expected a name of letters, digits and _, given " + quoted(out));
     return out;
   }
 

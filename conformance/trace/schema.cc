@@ -189,9 +189,7 @@ std::optional<std::int64_t> Domain::number_of(std::string_view text) const {
 }
 
 Value Domain::show(std::int64_t number) const {
-  if (kind == Kind::kReal) {
-    return Value::real(float_of_bits(static_cast<std::uint32_t>(number)));
-  }
+  if (kind == Kind::kReal) return Value::real(float_of_bits(static_cast<std::uint32_t>(number)));
   if (names) {
     const char* name = reflect::enum_name(*names, number);
     if (name) return Value::names(std::strcmp(name, "broadcast") == 0 ? "all" : name);

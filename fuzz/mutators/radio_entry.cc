@@ -12,8 +12,7 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
   if (max_size <= kHead || mutator.random().below(2) == 0) {
     return fuzz::mutate_bytes(data, size, max_size, seed);
   }
-  fuzz::PacketStream stream;
-  stream.format = InputFormat::kPcap;
+  fuzz::PacketStream stream{.format = InputFormat::kPcap};
   const bool has_fcs = mutator.random().below(2) == 0;
   stream.link_type = has_fcs ? kLinkRadioFcs : kLinkRadioNoFcs;
   if (size > kHead && data[0] % 3 != 2) {

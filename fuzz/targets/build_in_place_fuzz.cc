@@ -104,9 +104,7 @@ void step(SynCreateCmdBuilder& out, SynCreateCmd& value, MutableBytes, Input& in
     case 2: return out.set_params(value.params = static_cast<std::int8_t>(i));
     default: {
       const std::vector<std::uint16_t> all(i, in.u16());
-      if (out.set_src_neurons(all.data(), i)) {
-        std::copy(all.begin(), all.end(), value.src_neurons);
-      }
+      if (out.set_src_neurons(all.data(), i)) std::copy(all.begin(), all.end(), value.src_neurons);
       return;
     }
   }

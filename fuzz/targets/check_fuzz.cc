@@ -39,9 +39,7 @@ check::Options options_for(std::size_t size) {
 
 void refers_to_what_is_there(const check::Run& run, const check::Report& report) {
   std::set<std::pair<std::uint32_t, std::uint64_t>> frames;
-  for (const check::Observation& one : run.seen) {
-    frames.insert({one.place.file, one.place.frame});
-  }
+  for (const check::Observation& one : run.seen) frames.insert({one.place.file, one.place.frame});
   const auto is_there = [&](const check::Place& place) {
     return place.file < run.files.size() &&
            (place.frame == 0 || frames.contains({place.file, place.frame}));

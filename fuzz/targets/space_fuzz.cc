@@ -80,8 +80,7 @@ void wish_is_bounded(const Tuple& tuple) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string text(reinterpret_cast<const char*>(data), size);
   const std::size_t end = std::min(text.find('\n'), text.size());
-  Tuple tuple;
-  tuple.key = text.substr(0, end);
+  Tuple tuple{.key = text.substr(0, end)};
   const auto key = parse_key(tuple.key);
   if (key) require(text_of(*key) == tuple.key, "a key has one spelling");
   require(matches("#", tuple.key) && matches(tuple.key, tuple.key), "a key matches itself");

@@ -135,9 +135,7 @@ std::optional<std::string> text_of_file(const std::string& file, Diagnostics& di
 
 std::string quote(std::string_view word) {
   std::string out = "'";
-  for (const char c : word.substr(0, 80)) {
-    out += static_cast<unsigned char>(c) < 0x20 ? '?' : c;
-  }
+  for (const char c : word.substr(0, 80)) out += static_cast<unsigned char>(c) < 0x20 ? '?' : c;
   if (word.size() > 80) out += "...";
   return out + "'";
 }

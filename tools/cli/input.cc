@@ -422,9 +422,7 @@ class Run {
       packet.dropped_bytes += got - taken;
     }
     packet.bytes = Bytes(bytes.data(), bytes.size());
-    if (packet.dropped_bytes) {
-      packet.error = Error{Fault::kTooLong, kBareMost, ReqId::kNone};
-    }
+    if (packet.dropped_bytes) packet.error = Error{Fault::kTooLong, kBareMost, ReqId::kNone};
     source_.format = "bare";
     give(packet, {});
   }

@@ -66,8 +66,7 @@ void InputThreads::read(InputOptions options, std::size_t file) {
 }
 
 void InputThreads::keep(const Packet& packet, const Source& source, std::size_t file) {
-  Kept kept;
-  kept.packet = packet;
+  Kept kept{.packet = packet};
   kept.bytes.assign(packet.bytes.begin(), packet.bytes.end());
   kept.comment = packet.comment;
   kept.interface_name = source.interface_name;

@@ -164,8 +164,7 @@ std::string_view format_name(InputFormat format) {
 }
 
 Reading reading_of(const InputOptions& options, Bytes beginning) {
-  Reading out;
-  out.format = options.format == "auto" ? detect(beginning) : find_format(options.format);
+  Reading out{.format = options.format == "auto" ? detect(beginning) : find_format(options.format)};
   for (const std::string& text : options.links) {
     const std::optional<UserLink> link = parse_user_link(text);
     if (link) out.options.user_links[link->from - kLinkUserFirst] = link->to;

@@ -127,9 +127,7 @@ int check_files(const CheckOptions& options) {
   bool undamaged = true;
   check::Run whole = read_run(options, undamaged);
   check::Run part = ranges.empty() ? std::move(whole) : report::part_of(whole, ranges, judged);
-  if (std::string error; !check::drop_duplicates(part, judged, error)) {
-    cli::unreadable(error);
-  }
+  if (std::string error; !check::drop_duplicates(part, judged, error)) cli::unreadable(error);
   const check::Report found = check::judge(part, judged);
   report::Outcome outcome = report::compare(part, judged, found, expected);
   outcome.input_missing = !undamaged;

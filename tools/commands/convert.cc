@@ -142,9 +142,7 @@ int run_convert(const ConvertOptions& options) {
   const encode::Holds holds = encode::holds(options.format);
   encode::PacketOutput output(options.format, options.output);
   const auto on_packet = [&](const Packet& packet, const cli::Source& source) {
-    if (!options.only.empty() && format::framing_name(packet.framing) != options.only) {
-      return true;
-    }
+    if (!options.only.empty() && format::framing_name(packet.framing) != options.only) return true;
     if (cli::is_damage(packet)) return true;  // Said already, and no packet.
     if (!filter.takes(packet, source.interface_name, source.number)) return true;
     ++losses.packets;

@@ -102,9 +102,7 @@ void run_repro(const ReproOptions& options) {
   const Repro repro = options.fuzzer == "network" ? repro_network(bytes, options)
                       : options.fuzzer == "nodes" ? repro_nodes(bytes)
                                                   : repro_machine(bytes, options);
-  if (!cli::write_file(options.out, trace::print(repro.file))) {
-    cli::exit_with(cli::kExitOutput);
-  }
+  if (!cli::write_file(options.out, trace::print(repro.file))) cli::exit_with(cli::kExitOutput);
   // A difference of two nodes has several lines.
   text::print_harmless(
       stderr, repro.found.empty() ? "nothing is broken\n" : "broken: " + repro.found + '\n');

@@ -108,8 +108,7 @@ std::string PacketOutput::write(const Packet& packet, std::string_view interface
 
 bool PacketOutput::finish() {
   if (!writer_) {
-    Packet none;
-    none.framing = Framing::kHdlc;
+    Packet none{.framing = Framing::kHdlc};
     make_writer(none);
   }
   output_.buffer().append(cut_);

@@ -129,9 +129,7 @@ std::uint64_t read_hex(const Token& token) {
 }
 
 Operand of_whole(reflect::Whole value) {
-  Operand operand;
-  operand.halves = 2 * value;
-  operand.real = static_cast<double>(value);
+  Operand operand{.halves = 2 * value, .real = static_cast<double>(value)};
   return operand;
 }
 

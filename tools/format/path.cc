@@ -95,9 +95,7 @@ Path::Path(std::string_view text, const Protocol& protocol) : text_(text), proto
   if (targets_.empty()) refuse(components_.size() > 1 ? text_ : components_.back());
   for (const std::string& component : components_) {
     const bool last = &component == &components_.back();
-    if (!last && std::find(known.begin(), known.end(), component) == known.end()) {
-      refuse(component);
-    }
+    if (!last && std::find(known.begin(), known.end(), component) == known.end()) refuse(component);
   }
 }
 

@@ -269,10 +269,9 @@ class CheckLive(CheckTest):
 
     def test_a_pipe_that_ends(self):
         for words in (("check", "--format", "json"), ("decode",), ("stats",)):
-            code, out, err = rubric(words[0], "-", "--follow", *words[1:], stdin=data(STRAY_REPLY),
-                                    timeout=PATIENCE_S)
-            self.assertEqual(code, words[0] == "check", err)
-            self.assertIn("50421" if words[0] == "decode" else "frames", out)
+            self.shows((words[0], "-", "--follow", *words[1:]),
+                       "50421" if words[0] == "decode" else "frames", code=words[0] == "check",
+                       stdin=data(STRAY_REPLY), timeout=PATIENCE_S)
 
     def test_a_named_pipe(self):
         path = self.folder / "sniffed"

@@ -298,9 +298,8 @@ class Inputs(Folder):
         self.assertEqual(check(CLEAN)[0], 0)
         self.assertEqual(check(WRONG_SEQ)[0], 1)
         beacons = self.write("nothing.hex", "05 12 34\n")
-        code, out, err = check(beacons)
-        self.assertEqual((code, err), (3, ""))
-        self.assertIn("No frames of this protocol: there is nothing to judge.", out)
+        self.shows(("check", beacons), "No frames of this protocol: there is nothing to judge.",
+                   code=3, err="")
         self.assertEqual(as_json(beacons)["verdict"], "inconclusive")
         foreign = self.write("foreign.hex", "00 FF FF 00 03 02 00 52 01 50\n")
         code, out, _ = check(foreign)

@@ -174,9 +174,7 @@ class Fcs(Folder):
         """As of a sniffer in a busy place: one frame in four fails its CRC."""
         file = self.pcap([frame + bytes((200, (0x80 if i % 4 else 0) + 100))
                           for i, frame in enumerate(self.radio_frames())])
-        code, _, err = rubric("decode", file)
-        self.assertEqual(code, 1)
-        self.assertIn("--fcs cc24xx", err)
+        self.shows(("decode", file), code=1, err="--fcs cc24xx")
         out = rubric("decode", "--fcs", "cc24xx", "--filter", "error", file)[1]
         self.assertEqual(out.count(b"!! fcs at"), (len(self.radio_frames()) + 3) // 4)
 
@@ -335,9 +333,8 @@ class Convert(Folder):
         for what in ["holds no times", "holds no directions", "holds no interface names",
                      "does not say which lines are radio frames"]:
             self.assertIn(what, err)
-        code, _, err = rubric("convert", PCAPNG, "-o", self.folder / "x.pcap")
-        self.assertEqual(code, 0)
-        self.assertIn("left out 71 of 151 packets: pcap holds one link type", err)
+        self.shows(("convert", PCAPNG, "-o", self.folder / "x.pcap"),
+                   err="left out 71 of 151 packets: pcap holds one link type")
         code, _, err = rubric("convert", PCAPNG, "-o", self.folder / "x.sf")
         self.assertIn("left out 80 of 151 packets: sf holds no radio frames", err)
         code, _, err = rubric("convert", BAD_CRC, "--format", "sf")

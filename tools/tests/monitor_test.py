@@ -21,7 +21,7 @@ from check_live_testing import BROKEN_LINE, data
 from live_testing import Forwarder, LiveTest, Running
 from run_test import Node
 from serial_testing import PATIENCE_S, held_port
-from testing import RUBRIC, rubric
+from testing import RUBRIC
 
 # A reading of long ago.
 OLD = '{"creator":"11:null","time":"2020-01-31T23:59:59.123Z","data":{"light":{"raw":9}}}'
@@ -204,9 +204,7 @@ class Monitor(LiveTest):
                 ((), 64, "SOURCE"), (("run.pcapng",), 64, "expected a line such as"),
                 (("mqtt://me:secret@x",), 64, "into a file or the environment"),
                 (("sf@127.0.0.1:1",), 66, "refused")):
-            got, _, err = rubric("monitor", *arguments)
-            self.assertEqual(got, code, err)
-            self.assertIn(text, err)
+            self.shows(("monitor", *arguments), code=code, err=text)
 
 
 if __name__ == "__main__":

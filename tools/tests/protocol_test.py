@@ -17,14 +17,17 @@ CTP_NODE = f"python3 {CTP}/node.py"
 
 
 class Protocol(testing.Folder):
+    def setUp(self):
+        super().setUp()
+        self.cwd = self.folder
+
     def rubric(self, *words):
         return testing.rubric(*words, cwd=self.folder)
 
     def new(self):
         """A folder that new-protocol has just written, and a node whose mistake it names."""
-        code, out, err = self.rubric("new-protocol", "probes")
-        self.assertEqual((code, err), (0, ""))
-        self.assertIn("rubric test --protocol probes --target 'python3 probes/node.py'", out)
+        self.shows(("new-protocol", "probes"),
+                   "rubric test --protocol probes --target 'python3 probes/node.py'", err="")
         return self.folder / "probes"
 
     def change(self, path, old, new):
@@ -39,25 +42,20 @@ class Protocol(testing.Folder):
 
     def test_a_new_one_is_green(self):
         self.new()
-        code, out, err = self.rubric("test", "--protocol", "probes", "--target",
-                                     "python3 probes/node.py", "--require-rules", 3)
-        self.assertEqual((code, err), (0, ""), out)
-        self.assertIn("probes_python 1.0 plays node; 2 cases\n", out)
-        self.assertIn("Of 3 rules 3 tried: 3 kept, 0 broken, 0 not decided.", out)
+        self.shows(("test", "--protocol", "probes", "--target", "python3 probes/node.py",
+                    "--require-rules", 3), "probes_python 1.0 plays node; 2 cases\n",
+                   "Of 3 rules 3 tried: 3 kept, 0 broken, 0 not decided.", err="")
         names = {str(path.relative_to(self.folder)) for path in self.folder.rglob("*")}
         self.assertTrue({"probes/probes.ksy", "probes/cases/probes.rtr"} <= names, names)
-        code, out, err = self.rubric("new-protocol", "probes")
-        self.assertEqual((code, out), (74, ""))
-        self.assertIn("it exists, and may hold your work", err)
+        self.refused(("new-protocol", "probes"), "it exists, and may hold your work", code=74)
         for name in ("Probes", "7up", "a-b", ""):
             self.assertEqual(self.rubric("new-protocol", name)[0], 64, name)
 
     def test_a_trace_that_cannot_be_read_is_named(self):
         probes = self.new()
         (probes / "cases/more.rtr").symlink_to("nowhere")
-        code, _, err = self.rubric("test", "--protocol", "probes", "--list")
-        self.assertEqual(code, 66)
-        self.assertIn("probes/cases/more.rtr: No such file or directory", err)
+        self.shows(("test", "--protocol", "probes", "--list"), code=66,
+                   err="probes/cases/more.rtr: No such file or directory")
         (self.folder / "endless.rtr").symlink_to("/dev/zero")
         code, _, err = self.rubric("test", "--protocol", "probes", "--list", "endless.rtr")
         self.assertEqual((code, err), (66, "rubric: endless.rtr: File too large\n"))
@@ -65,9 +63,8 @@ class Protocol(testing.Folder):
     def test_decode_reads_its_frames(self):
         self.new()
         (self.folder / "frame.hex").write_text("00 00 01 00 05 03 00 a2 07 00 d7\n")
-        code, out, _ = self.rubric("decode", "--spec", "probes/probes.ksy", "frame.hex")
-        self.assertEqual(code, 0)
-        self.assertIn("reading                 number=7 value=215", out)
+        self.shows(("decode", "--spec", "probes/probes.ksy", "frame.hex"),
+                   "reading                 number=7 value=215")
 
     def test_a_mistake_is_found_by_its_rule_in_all_reports(self):
         broken = self.broken_node(self.new())
@@ -94,9 +91,8 @@ class Protocol(testing.Folder):
         self.assertIn("requirement: ANSWER-OTHERS", (self.folder / "known.yaml").read_text())
         text = (self.folder / "known.yaml").read_text().replace('reason: ""', "reason: known")
         (self.folder / "known.yaml").write_text(text)
-        code, out, err = self.rubric("test", "--protocol", "probes", "--target", broken,
-                                     "--expect", "known.yaml")
-        self.assertEqual((code, err), (0, ""), out)
+        self.shows(("test", "--protocol", "probes", "--target", broken, "--expect", "known.yaml"),
+                   err="")
 
     def test_a_log_is_a_case(self):
         broken = self.broken_node(self.new())
@@ -104,8 +100,7 @@ class Protocol(testing.Folder):
         logs = sorted((self.folder / "report").rglob("*.rtr"))
         self.assertTrue(logs)
         for log in logs:
-            code, out, err = self.rubric("test", "--protocol", "probes", "--list", log)
-            self.assertEqual((code, err), (0, ""), log.read_text())
+            self.shows(("test", "--protocol", "probes", "--list", log), err="")
 
     def test_shrink_and_diff_work_by_targets_alone(self):
         broken = self.broken_node(self.new())
@@ -122,15 +117,11 @@ class Protocol(testing.Folder):
         self.assertEqual(code, 0, err)
         self.assertIn("2 of the 5 lines of long.", out)
         self.assertIn("ANSWER-OTHERS", out)
-        code, _, err = self.rubric("shrink", "--protocol", "probes", trace, "--target", broken,
-                                   "--reference", broken)
-        self.assertEqual(code, 64)
-        self.assertIn("--reference: probes_python 1.0 does not pass the trace itself", err)
-        code, out, err = self.rubric("diff", "--protocol", "probes", "--target", good, "--target",
-                                     broken)
-        self.assertEqual(code, 1, err)
-        self.assertIn("2 cases compared, 1 differ", err)
-        self.assertIn("case answer.others.difference", out)
+        self.shows(("shrink", "--protocol", "probes", trace, "--target", broken, "--reference",
+                    broken), code=64,
+                   err="--reference: probes_python 1.0 does not pass the trace itself")
+        self.shows(("diff", "--protocol", "probes", "--target", good, "--target", broken),
+                   "case answer.others.difference", code=1, err="2 cases compared, 1 differ")
 
     def test_text_and_bits_are_compared(self):
         probes = self.new()
@@ -187,10 +178,8 @@ class Protocol(testing.Folder):
         probes = self.new()
         case = probes / "cases/probes.rtr"
         self.change(case, "%node n5 node id=5 iut", "%node n5 node id=5 iut response=20")
-        code, out, _ = self.rubric("test", "--protocol", "probes", "--target",
-                                   "python3 probes/node.py", "--format", "tap")
-        self.assertEqual(code, 3, out)
-        self.assertIn("it is not built with response=20", out)
+        self.shows(("test", "--protocol", "probes", "--target", "python3 probes/node.py",
+                    "--format", "tap"), "it is not built with response=20", code=3)
         self.change(probes / "node.py", 'serve(Node, "probes_python", ["node"])',
                     'serve(Node, "probes_python", ["node"], response=100)')
         self.change(probes / "node.py", "def __init__(self, world, role, id, seed):",
@@ -259,27 +248,19 @@ class Protocol(testing.Folder):
             "    elif words[0] == 'until': print('done', words[1])\n"
             "    else: print('done 0')\n"
             "    sys.stdout.flush()\n")
-        code, out, _ = self.rubric("test", "--protocol", "probes", "--target", "python3 liar.py")
-        self.assertEqual(code, 2)
-        self.assertIn("it does not refuse an unknown command", out)
+        self.shows(("test", "--protocol", "probes", "--target", "python3 liar.py"),
+                   "it does not refuse an unknown command", code=2)
 
     def test_rubicon_is_as_it_was(self):
-        code, out, err = self.rubric("test", "--list", "--rule", "J4-SEQ")
-        self.assertEqual((code, err), (0, ""))
-        self.assertIn("j4.wrong_seq", out)
+        self.shows(("test", "--list", "--rule", "J4-SEQ"), "j4.wrong_seq", err="")
 
     def test_rules_and_cases_are_shown(self):
-        code, out, err = self.rubric("explain", "--protocol", CTP, "pull", "DATA-NEW-THL")
-        self.assertEqual((code, err), (0, ""))
-        self.assertIn("PULL-ASK: SHOULD, routing pull", out)
-        self.assertIn("positive: data.new_thl", out)
+        out = self.shows(("explain", "--protocol", CTP, "pull", "DATA-NEW-THL"),
+                         "PULL-ASK: SHOULD, routing pull", "positive: data.new_thl", err="")
         self.assertNotIn("machine:", out)
-        code, out, err = self.rubric("chart", "--protocol", CTP, "beacon.etx", "--target", CTP_NODE)
-        self.assertEqual((code, err), (0, ""))
-        self.assertIn("ctp_routing", out)
-        code, _, err = self.rubric("chart", "--protocol", CTP, "beacon.etx")
-        self.assertEqual(code, 64)
-        self.assertIn("give --target", err)
+        self.shows(("chart", "--protocol", CTP, "beacon.etx", "--target", CTP_NODE), "ctp_routing",
+                   err="")
+        self.shows(("chart", "--protocol", CTP, "beacon.etx"), code=64, err="give --target")
 
     def test_each_rule_of_ctp_has_a_case(self):
         code, out, _ = self.rubric("test", "--protocol", CTP, "--list", "--format", "json")

@@ -72,17 +72,22 @@ def on_terminal(*words, env, width=0):
 class ProgramTest(unittest.TestCase):
     """Tests of what the program says."""
 
-    def shows(self, words, *texts, code=0, **how):
-        """The program ends with that exit code and shows these texts. Returns its output."""
-        got, out, err = rubric(*words, **how)
-        self.assertEqual(got, code, (words, out, err))
+    cwd = None  # The program runs there.
+
+    def shows(self, words, *texts, code=0, err=None, **how):
+        """The program ends with that exit code and shows these texts; among its errors is `err`,
+        and there are none if that is empty. Returns its output."""
+        got, out, said = rubric(*words, cwd=self.cwd, **how)
+        self.assertEqual(got, code, (words, out, said))
         for text in texts:
             self.assertIn(text, out)
+        if err is not None:
+            self.assertIn(err, said if err else [said])
         return out
 
     def refused(self, words, says, code=64, **how):
         """The program ends with that exit code, without output, and says this among its errors."""
-        got, out, err = rubric(*words, **how)
+        got, out, err = rubric(*words, cwd=self.cwd, **how)
         self.assertEqual((got, out), (code, ""), (words, err))
         self.assertIn(says, err)
 

@@ -252,9 +252,7 @@ std::vector<Kept> deframe_by_turns(Bytes stream) {
 
 TEST(WireHdlcFlag, TheCheckAboveSeesADeframerThatLosesFrames) {
   Tally tally;
-  for (int seed = 1; seed <= 5; ++seed) {
-    run_round(captured_frames(), seed, deframe_by_turns, tally);
-  }
+  for (int seed = 1; seed <= 5; ++seed) run_round(captured_frames(), seed, deframe_by_turns, tally);
   EXPECT_GT(tally.missed, 0u);
 }
 

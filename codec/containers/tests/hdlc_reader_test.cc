@@ -208,9 +208,7 @@ RC_GTEST_PROP(WireHdlcEscape, RebuildIsTheInverse, ()) {
   const auto size = *rc::gen::inRange<std::size_t>(1, 301);
   auto content = *rc::gen::container<std::string>(
       size, rc::gen::oneOf(rc::gen::arbitrary<char>(), rc::gen::element('\x7d', '\x7e', '\x5d')));
-  if (*rc::gen::arbitrary<bool>()) {
-    content[0] = *rc::gen::element('\x43', '\x44', '\x45');
-  }
+  if (*rc::gen::arbitrary<bool>()) content[0] = *rc::gen::element('\x43', '\x44', '\x45');
   comes_back(content, escaped(content) + "\x7e");
   comes_back(content, escaped(content) + "\x7d\x7e");
   comes_back(content, escaped(content));

@@ -305,9 +305,7 @@ void Server::wait(std::optional<Time> until) {
   polled_.clear();
   polled_.push_back({accept_at_ ? -1 : listener_.get(), POLLIN, 0});
   polled_.push_back(source_.wanted());
-  for (const auto& client : clients_) {
-    polled_.push_back({client->poll_fd(), client->events(), 0});
-  }
+  for (const auto& client : clients_) polled_.push_back({client->poll_fd(), client->events(), 0});
   timespec left{};
   if (until) {
     const auto time = std::max(*until - steady_clock::now(), Time::duration::zero());

@@ -23,9 +23,7 @@ std::int64_t wall_ns() {
 }
 
 ReaderOptions reader_options(const std::string& name, Direction direction) {
-  ReaderOptions out;
-  out.direction = direction;
-  out.interface_name = name;
+  ReaderOptions out{.direction = direction, .interface_name = name};
   return out;
 }
 

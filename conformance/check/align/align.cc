@@ -172,9 +172,7 @@ class Alignment {
   ClockFit fitted(std::uint32_t a, std::uint32_t b) {
     const CommonFrames common = common_of(a, b);
     if (!goes_on(a, b, common)) return fit_clock(run_, common, options_);
-    ClockFit fit;
-    fit.clocks = Clocks::kAgree;
-    fit.frames = common.pairs.size();
+    ClockFit fit{.clocks = Clocks::kAgree, .frames = common.pairs.size()};
     return fit;
   }
 
@@ -361,8 +359,7 @@ class Alignment {
       if (turned) turn(*turned, b);
       return;
     }
-    OrderFit fit;
-    fit.why = "frames between islands may go either way on its line";
+    OrderFit fit{.why = "frames between islands may go either way on its line"};
     if (turned) fit = fit_order(run_, b, evidence, options_);
     const std::string other = run_.files[*air];
     if (!fit.good) {

@@ -342,9 +342,7 @@ class Fit {
     if (points_.empty()) return unsure("no event is in both");
     if (!find_inliers()) return out_;
     const std::size_t others = points_.size() - in_.size();
-    if (others >= kFramesMin && kStepShare * others > points_.size()) {
-      return unsure(kSteps);
-    }
+    if (others >= kFramesMin && kStepShare * others > points_.size()) return unsure(kSteps);
     const std::int64_t base_us = in_.front().ahead_us;
     out_.drift = drift_of(in_, base_us);
     out_.spread_us = quantile(deviations(in_), 0.9);

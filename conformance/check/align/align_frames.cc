@@ -222,8 +222,7 @@ std::vector<std::vector<Sighting>> sightings_of(const Run& run) {
     const Observation& seen = run.seen[i];
     const bool frame = seen.kind == Kind::kRadio || seen.kind == Kind::kSerial;
     if (!frame) continue;
-    Sighting one;
-    one.index = i;
+    Sighting one{.index = i};
     if (passes(seen, one)) out[seen.place.file].push_back(one);
     if (!seen.node.empty()) continue;
     out[seen.place.file].push_back({key_of(seen), i, Common::kSame, false});

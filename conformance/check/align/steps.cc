@@ -201,9 +201,7 @@ class Recorded {
         second = std::max(second, gap);
       }
     }
-    if (longest > kSilenceUs && longest > kSilences * second) {
-      suspect_[at] = What::kStep;
-    }
+    if (longest > kSilenceUs && longest > kSilences * second) suspect_[at] = What::kStep;
   }
 
   // Marks silences without which effects came in time after their causes. Where there are more

@@ -65,10 +65,7 @@ class Identifier {
   }
 
   void add_logged(const LoggedNode& node) {
-    Device device;
-    device.am = node.id;
-    device.role = node.role;
-    device.island = node.island;
+    Device device{.am = node.id, .role = node.role, .island = node.island};
     // Of one that only a header names as under test the log shows nothing; a capture may.
     device.judged = node.under_test && (node.logged || captured_);
     device.application = node.application;

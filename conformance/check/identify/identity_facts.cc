@@ -33,9 +33,7 @@ void name_devices(const Run& run, Identity& out) {
     }
     std::string fact = device.name + ":";
     if (device.radio) fact += " " + counted(device.frames, "frame") + " on the air,";
-    for (const std::uint32_t tap : device.taps) {
-      fact += " serial line " + run.taps[tap].name + ",";
-    }
+    for (const std::uint32_t tap : device.taps) fact += " serial line " + run.taps[tap].name + ",";
     if (device.application) fact += " application log,";
     // Frames that a followed run has let go are none that were missed.
     const auto gaps = std::ranges::count_if(

@@ -263,8 +263,7 @@ struct RunReader::State {
 
   void begin(const std::string& name, Bytes start, const std::string& interface_name) {
     run.files.push_back(name);
-    ReaderOptions options;
-    options.interface_name = interface_name;
+    ReaderOptions options{.interface_name = interface_name};
     reader = make_reader(detect(start), options);
     source = ReadSource{static_cast<std::uint32_t>(run.files.size() - 1), {}, 0};
   }

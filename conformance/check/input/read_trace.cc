@@ -121,9 +121,7 @@ class LogReader {
         const LoggedNode& other = run_.nodes[i];
         return other.logged > node.logged || (&other < &node && !node.logged);
       };
-      if (std::ranges::none_of(named(node.name), better)) {
-        kept.push_back(std::move(node));
-      }
+      if (std::ranges::none_of(named(node.name), better)) kept.push_back(std::move(node));
     }
     run_.nodes = std::move(kept);
   }

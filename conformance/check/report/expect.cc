@@ -29,9 +29,7 @@ ReqId rule_of(const KnownFailure& one) { return reflect::find_requirement(one.re
 
 // All but the message agrees.
 bool is_about(const KnownFailure& one, const check::Run& run, const Finding& finding) {
-  if (finding.severity != Severity::kFail || finding.requirement != rule_of(one)) {
-    return false;
-  }
+  if (finding.severity != Severity::kFail || finding.requirement != rule_of(one)) return false;
   if (!one.node.empty() && finding.node != one.node) return false;
   return one.file.empty() || (finding.place.file < run.files.size() &&
                               glob_matches(one.file, run.files[finding.place.file]));

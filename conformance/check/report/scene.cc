@@ -141,9 +141,7 @@ void Scene::add_radio_receivers(std::size_t i, std::vector<std::uint16_t>& out) 
   check::Net net;
   check::AckJoin ack;
   std::uint16_t island = check::kNoIsland;  // Of the sink, if the message shows it.
-  if (frame.type == check::am::kNet && check::parse_net(frame.payload, net)) {
-    island = net.dest.pid;
-  }
+  if (frame.type == check::am::kNet && check::parse_net(frame.payload, net)) island = net.dest.pid;
   if (frame.type == check::am::kAckJoin && check::parse_ack_join(frame.payload, ack)) {
     island = ack.dest.pid;
   }

@@ -92,9 +92,7 @@ TEST(Align, TheFindingsOfCapturesOfTheFirmwareStay) {
     for (const double ahead_s : kAhead_s) {
       for (const double drift_ppm : {0.0, 50.0}) {
         for (const bool strict : {false, true}) {
-          SerialClock clock;
-          clock.ahead_s = ahead_s;
-          clock.drift_ppm = drift_ppm;
+          SerialClock clock{.ahead_s = ahead_s, .drift_ppm = drift_ppm};
           Options options{.sniffer_complete = strict, .start_cold = strict};
           const std::string what = std::string(name) + " " + std::to_string(ahead_s) + " s " +
                                    std::to_string(drift_ppm) + " ppm";

@@ -174,8 +174,7 @@ std::set<std::string> blamed_in(const Report& report) {
 TEST(AlignTwice, TwoSniffersOnOtherClocksThatBothMissFrames) {
   std::size_t lines = 0;
   for (const char* name : {"a_join_data", "b_reliable", "c_two_islands", "f_synaptic"}) {
-    SerialClock clock;
-    clock.ahead_s = -777;
+    SerialClock clock{.ahead_s = -777};
     const Apart apart = take_apart(capture(name), clock);
     clock.base_s += 2;
     Part first{"radio", frames_of(apart.parts[0].bytes, [](auto i) { return i % 5 != 0; }), {0}};
@@ -230,9 +229,7 @@ check::Run two_sniffers(const Script& script, std::uint64_t lost, std::int64_t a
 // Mote 3 asks, the sinks of islands 11 and 12 answer; it takes the offer of 12, which comes at
 // `offer_ms`, at 3015 ms.
 Script choice(double offer_ms) {
-  Script script;
-  script.join(100, 11, 2, 500);
-  script.join(300, 12, 5, 550, 2);
+  Script script = Script().join(100, 11, 2, 500).join(300, 12, 5, 550, 2);
   const auto send = [&](double ms, std::uint16_t island, std::uint16_t mote, int i) {
     NetFields up;
     up.dest = {island, machine::kNullDevid};
@@ -303,8 +300,7 @@ TEST(AlignTwice, OneLineTwice) {
 
 // A recorder that begins another file does not set its clock: frames that were under way come late.
 TEST(AlignTwice, AFileThatGoesOnWhereAnotherEnds) {
-  Script script;
-  script.join(0, 11, 2, 100).join(200, 11, 3, 200).join(400, 11, 4, 300);
+  Script script = Script().join(0, 11, 2, 100).join(200, 11, 3, 200).join(400, 11, 4, 300);
   for (std::uint16_t mote = 2; mote < 5; ++mote) {
     script.net(1000 + 15 * mote, mote, 1, update(mote, 5));
   }

@@ -49,8 +49,7 @@ void moves(Script& script, std::uint16_t to) {
 
 // A mote joins, the sink's island is set to 13, and another mote joins in `then`.
 Script moved(double set_ms, bool confirmed, std::uint16_t then, std::uint32_t clock_ms = 3010) {
-  Script script;
-  script.join(0, 11, 2, 100);
+  Script script = Script().join(0, 11, 2, 100);
   set_island(script, set_ms, 13, confirmed);
   moves(script, 13);
   script.request(3000, 4, 200).reply(3010, then, 4, 200, clock_ms);
@@ -90,9 +89,7 @@ TEST(Captures, ASinkThatLostItsPowerHasAnIslandThatNobodySaw) {
 
 TEST(Captures, ASinkThatLostItsPowerForwardsForItsFirstIsland) {
   const auto found = [](std::uint8_t dsn, int frames) {
-    Script script;
-    script.join(0, 11, 2, 100);
-    script.net(500, 2, 1, message({11, 2}, {11, 1}, 5, 1));
+    Script script = Script().join(0, 11, 2, 100).net(500, 2, 1, message({11, 2}, {11, 1}, 5, 1));
     script.net(510, 1, 2, message({11, 2}, {11, 1}, 5, 1).ack(30), 11);
     set_island(script, 1500, 13);
     forwards(script, 3000, 2, 7);
@@ -115,8 +112,7 @@ TEST(Captures, ASinkThatLostItsPowerForwardsForItsFirstIsland) {
 
 TEST(Captures, WhatWasUnderWayShowsTheFormerIsland) {
   EXPECT_EQ(found_in(moved(3005, true, 11)), "F:N9-SET");  // Its ack_join came after.
-  Script script;
-  script.join(0, 11, 2, 100).request(1000, 4, 200).reply(1010, 11, 4, 200, 1010);
+  Script script = Script().join(0, 11, 2, 100).request(1000, 4, 200).reply(1010, 11, 4, 200, 1010);
   script.ack_join(1020, 11, 4, 200).link_ack();
   set_island(script, 1031, 13);
   script.joined(1040, 11, 4);
@@ -124,8 +120,7 @@ TEST(Captures, WhatWasUnderWayShowsTheFormerIsland) {
 }
 
 TEST(Captures, TheSameIslandAgainMayForgetMembers) {
-  Script script;
-  script.join(0, 11, 2, 100);
+  Script script = Script().join(0, 11, 2, 100);
   set_island(script, 1000, 11);
   script.join(2000, 11, 2, 200);
   EXPECT_EQ(found_in(script, false), "I:J5-STOP");
@@ -141,23 +136,18 @@ TEST(Captures, AnIslandIsNotTheSinksBeforeItWasSet) {
 }
 
 TEST(Captures, AReservedIslandIsNobodys) {
-  Script script;
-  script.join(0, 11, 2, 100).request(1000, 4, 200);
+  Script script = Script().join(0, 11, 2, 100).request(1000, 4, 200);
   moves(script, 65534);
   script.reply(1010, 65534, 4, 200, 1010);
   EXPECT_EQ(found_in(script).substr(0, 10), "F:N9-OTHER");
 }
 
 TEST(Captures, AfterAJoinRequestNothingIsAwaited) {
-  Script script;
-  script.join(0, 11, 2, 100);
-  script.net(500, 2, 1, message({11, 2}, {11, 1}, 1, 1));
+  Script script = Script().join(0, 11, 2, 100).net(500, 2, 1, message({11, 2}, {11, 1}, 1, 1));
   script.join(700, 11, 2, 200);
   script.net(900, 2, 1, message({11, 2}, {11, 1}, 1, 1));
   EXPECT_EQ(found_in(script).find("T3-RESEND"), std::string::npos) << found_in(script);
-  Script again;
-  again.join(0, 11, 2, 100);
-  again.net(500, 2, 1, message({11, 2}, {11, 1}, 1, 1));
+  Script again = Script().join(0, 11, 2, 100).net(500, 2, 1, message({11, 2}, {11, 1}, 1, 1));
   again.net(900, 2, 1, message({11, 2}, {11, 1}, 1, 1));
   EXPECT_NE(found_in(again).find("F:T3-RESEND"), std::string::npos) << found_in(again);
 }
@@ -165,8 +155,7 @@ TEST(Captures, AfterAJoinRequestNothingIsAwaited) {
 // The link repeats a frame within 100 ms.
 TEST(Captures, ACopyIsTheLinksOnlySoLong) {
   const auto found = [](double ms) {
-    Script script;
-    script.join(0, 11, 2, 100).net(1000, 2, 1, message({11, 2}, {11, 1}, 1, 1));
+    Script script = Script().join(0, 11, 2, 100).net(1000, 2, 1, message({11, 2}, {11, 1}, 1, 1));
     --script.dsn[2];
     script.net(1000 + ms, 2, 1, message({11, 2}, {11, 1}, 1, 1));
     script.net(1000 + ms + 20, 1, 2, message({11, 2}, {11, 1}, 1, 1).ack(5), 11);
@@ -177,8 +166,7 @@ TEST(Captures, ACopyIsTheLinksOnlySoLong) {
 }
 
 TEST(Captures, ALineGoesOnInTheNextFile) {
-  Script script;
-  script.join(0, 11, 2, 100).net(1000, 2, 1, message({11, 2}, {12, 5}, 7));
+  Script script = Script().join(0, 11, 2, 100).net(1000, 2, 1, message({11, 2}, {12, 5}, 7));
   set_island(script, 1005, 32);
   script.up(1012, message({11, 2}, {12, 5}, 7).forwarded());
   const auto second = std::ranges::find(script.run.seen, true, &Observation::to_mote);
@@ -205,16 +193,14 @@ TEST(Captures, AFrameToTheWrongAddressIsItsSendersFault) {
   script.radio(0, 2, machine::kAmBroadcast, am::kJoin, request).reply(10, 11, 2, 100, 10);
   script.ack_join(20, 11, 2, 100).link_ack().joined(40, 11, 2);
   EXPECT_EQ(found_in(script), "F:J1-DEST");
-  Script reply;
-  reply.join(0, 11, 3, 50).request(500, 2, 100);
+  Script reply = Script().join(0, 11, 3, 50).request(500, 2, 100);
   reply.reply(510, 11, 2, 100, 510, machine::kAmBroadcast).ack_join(520, 11, 2, 100).link_ack();
   reply.joined(540, 11, 2);
   EXPECT_EQ(found_in(reply), "F:J3-DEST");
 }
 
 TEST(Captures, AForwardUnderTheSinksOwnName) {
-  Script script;
-  script.join(0, 11, 2, 100).net(500, 2, 1, update(2, 7));
+  Script script = Script().join(0, 11, 2, 100).net(500, 2, 1, update(2, 7));
   script.up(512, message({11, 1}, {11, kNullDevid}, 7).forwarded());
   EXPECT_EQ(found_in(script), "F:N6-CONTENT");
 }
@@ -234,16 +220,13 @@ TEST(Captures, AHostThatSendsUnderAnothersName) {
 }
 
 TEST(Captures, AMessageThatIsCutShort) {
-  Script script;
-  script.join(0, 11, 2, 100);
-  script.radio(500, 2, 1, am::kNet, Payload(10, 0));
+  Script script = Script().join(0, 11, 2, 100).radio(500, 2, 1, am::kNet, Payload(10, 0));
   EXPECT_EQ(found_in(script), "F:WIRE-NET-HEADER");
 }
 
 // The link repeats a frame with its DSN, so that nothing shows that the sniffer missed one copy.
 TEST(Captures, ACopyOfAFrameMayHaveEscaped) {
-  Script script;
-  script.join(0, 11, 2, 100);
+  Script script = Script().join(0, 11, 2, 100);
   forwards(script, 500, 2, 7);
   script.up(524, update(2, 7).forwarded());
   EXPECT_EQ(found_in(script, false), "I:N6-ONCE");
@@ -252,8 +235,7 @@ TEST(Captures, ACopyOfAFrameMayHaveEscaped) {
 
 // Mote 2 acks a message `copy_ms` before the link's copy of it, the first frame that is captured.
 Script acked_before(double copy_ms, std::uint16_t acked = 4) {
-  Script script;
-  script.join(0, 11, 2, 100);
+  Script script = Script().join(0, 11, 2, 100);
   for (std::uint16_t i = 1; i <= 4; ++i) {
     const NetFields down = message({11, 1}, {11, 2}, i, 1);
     NetFields ack = down.ack(static_cast<std::uint16_t>(50 + i));
@@ -275,8 +257,7 @@ TEST(Captures, ACopyComesAfterTheAckOfAFrameThatEscaped) {
 
 TEST(Captures, ACopyComesAfterTheReplyToARequestThatEscaped) {
   const auto answered = [](double copy_ms) {
-    Script script;
-    script.join(0, 11, 3, 50).reply(1000, 11, 2, 100, 1000);
+    Script script = Script().join(0, 11, 3, 50).reply(1000, 11, 2, 100, 1000);
     Payload request;
     put16(request, 100);
     put(request, kDescriptor);
@@ -291,8 +272,7 @@ TEST(Captures, ACopyComesAfterTheReplyToARequestThatEscaped) {
 
 // Messages 1 to 3 to mote 2, all confirmed by its link; it acks those of `acked`.
 Script acks(const std::vector<std::uint16_t>& acked) {
-  Script script;
-  script.join(0, 11, 2, 100);
+  Script script = Script().join(0, 11, 2, 100);
   for (std::uint16_t i = 1; i <= 3; ++i) {
     const NetFields down = message({11, 1}, {11, 2}, i, 1);
     script.radio(1000.0 * i, 1, 2, am::kNet, down.bytes(), 11, true).link_ack();
@@ -314,8 +294,7 @@ TEST(Captures, AMoteThatAckedBeforeOwesAnAck) {
 // Mote 2 of island 11 acks a message of island 12 for its devid, under an address of `island`; so
 // many of its frames before that escaped.
 Script acks_foreign(std::uint16_t island, std::uint8_t escaped) {
-  Script script;
-  script.join(0, 11, 2, 100).join(500, 12, 3, 200, 2);
+  Script script = Script().join(0, 11, 2, 100).join(500, 12, 3, 200, 2);
   forwards(script, 1000, 2, 6);
   script.dsn[2] += escaped;
   const NetFields foreign = message({12, 3}, {12, 2}, 5, 1);
@@ -339,8 +318,7 @@ TEST(Captures, AMoteMayHaveJoinedAnotherIslandUnseen) {
 }
 
 TEST(Captures, AMoteThatAsksOnAfterAnOfferThatItHad) {
-  Script script;
-  script.join(0, 11, 3, 50).request(1000, 2, 100).reply(1010, 11, 2, 100, 1010);
+  Script script = Script().join(0, 11, 3, 50).request(1000, 2, 100).reply(1010, 11, 2, 100, 1010);
   script.run.seen.back().ack_request = true;
   script.link_ack();
   for (const double ms : {1490.0, 1980.0}) script.request(ms, 2, 100);
@@ -349,8 +327,7 @@ TEST(Captures, AMoteThatAsksOnAfterAnOfferThatItHad) {
 
 // Sink and mote lose their power at 3 s, and the mote joins anew; `more` others follow.
 Script rebooted(int more) {
-  Script script;
-  script.join(0, 11, 2, 100).join(1000, 11, 3, 200);
+  Script script = Script().join(0, 11, 2, 100).join(1000, 11, 3, 200);
   script.dsn[11 * 65536U + 1] = script.dsn[2] = 90;
   for (int i = 0; i <= more; ++i) {
     const double ms = 5000 + 1000.0 * i;
@@ -379,11 +356,9 @@ TEST(Captures, AMessageForEveryIslandMayBeSentOnOnce) {
 
 TEST(Captures, AReplyInTheNameOfAnIslandThatNobodyHas) {
   const auto offers = [](std::uint16_t island) {
-    Script script;
-    script.join(0, 11, 2, 100).request(1000, 3, 200);
+    Script script = Script().join(0, 11, 2, 100).request(1000, 3, 200);
     script.dsn[island * 65536U + 1] = script.dsn[11 * 65536U + 1]++;
-    script.reply(1010, island, 3, 200, 1010);
-    script.join(3000, 11, 4, 300);
+    script.reply(1010, island, 3, 200, 1010).join(3000, 11, 4, 300);
     return found_in(script);
   };
   EXPECT_EQ(offers(12), "F:J3-ADDRESS");
@@ -401,8 +376,7 @@ TEST(Captures, AnAckOfANumberThatNoMessageHad) {
   const NetFields up = message({11, 2}, {11, 1}, 5, 1);
   NetFields wrong = up;
   wrong.seq_num = 0x500;
-  script.join(0, 11, 2, 100).net(500, 2, 1, up).link_ack();
-  script.net(510, 1, 2, wrong.ack(30), 11);
+  script.join(0, 11, 2, 100).net(500, 2, 1, up).link_ack().net(510, 1, 2, wrong.ack(30), 11);
   EXPECT_EQ(found_in(script), "F:T2-CONTENT");
 }
 
@@ -507,17 +481,14 @@ TEST(Captures, AMessageTooShortForItsPartsIsSentOn) {
 
 TEST(Captures, ACallThatChangesItsDescriptor) {
   const machine::Descriptor other{2, 1, 0x43};
-  Script script;
-  script.request(0, 2, 9).request(489, 2, 9, other).request(978, 2, 9, other);
+  Script script = Script().request(0, 2, 9).request(489, 2, 9, other).request(978, 2, 9, other);
   EXPECT_NE(found_in(script).find("W:J1-SEQ"), std::string::npos) << found_in(script);
-  Script same;
-  same.request(0, 2, 9).request(489, 2, 9).request(5000, 2, 10, other);
+  Script same = Script().request(0, 2, 9).request(489, 2, 9).request(5000, 2, 10, other);
   EXPECT_EQ(found_in(same).find("W:J1-SEQ"), std::string::npos) << found_in(same);
 }
 
 TEST(Captures, AMemberThatLostItsPowerIsNone) {
-  Script script;
-  script.join(0, 11, 2, 100).join(500, 11, 3, 200);
+  Script script = Script().join(0, 11, 2, 100).join(500, 11, 3, 200);
   script.dsn[2] = 200;
   for (std::uint16_t i = 0; i < 3; ++i) forwards(script, 2000 + 500 * i, 2, i);
   EXPECT_EQ(found_in(script), "F:J11-SEND");
@@ -527,8 +498,7 @@ TEST(Captures, AMemberThatLostItsPowerIsNone) {
 // Mote 2 joins, sends two messages, and loses its power; the island is set to another and back, so
 // that the sink forgets it. It joins anew from the DSN `first` on, and sends messages.
 Script reborn(std::uint8_t first, bool joins = true) {
-  Script script;
-  script.join(0, 11, 2, 100).join(500, 11, 3, 200);
+  Script script = Script().join(0, 11, 2, 100).join(500, 11, 3, 200);
   for (std::uint16_t i = 0; i < 2; ++i)
     forwards(script, 1000 + 300 * i, 2, i);  // Its DSNs are 0-3.
   set_island(script, 2000, 12);
@@ -553,8 +523,7 @@ TEST(Captures, ARebootedMoteComesToItsOldDsnsAgain) {
 
 TEST(Captures, ARequestAfterARebootHasTheLastDsnBeforeIt) {
   for (const int asked : {1, 2, 3}) {  // The first ones get no answer.
-    Script script;
-    script.join(0, 11, 2, 100).join(500, 11, 3, 200);
+    Script script = Script().join(0, 11, 2, 100).join(500, 11, 3, 200);
     set_island(script, 2000, 12);
     set_island(script, 2200, 11);
     --script.dsn[2];
@@ -581,8 +550,7 @@ TEST(Captures, ASinkThatGetsTheIslandOfAnotherKeepsItsLine) {
 }
 
 TEST(Captures, ARebootedSinkThatBeginsInTheNameOfAnotherIsland) {
-  Script script;
-  script.join(0, 11, 2, 100).join(500, 11, 3, 200);
+  Script script = Script().join(0, 11, 2, 100).join(500, 11, 3, 200);
   script.dsn[12 * 65536U + 1] = 200;
   script.request(2000, 7, 5).reply(2005, 12, 7, 5, 300);
   script.dsn[11 * 65536U + 1] = 201;

@@ -54,8 +54,7 @@ std::vector<std::string> found_in(const std::string& capture, bool deployed, boo
   std::string error;
   for (const std::string& file : files) EXPECT_TRUE(reader.add_file(file, error)) << error;
   const check::Run run_read = reader.finish();
-  Options options;
-  options.deployed = deployed;
+  Options options{.deployed = deployed};
   std::vector<std::string> lines;
   for (const Finding& finding : judge(run_read, options).findings) {
     EXPECT_FALSE(finding.text.empty());

@@ -147,8 +147,7 @@ TEST(Given, AWrongRoleIsSaidOnceAndTheRunBelieved) {
 
 // It asks as a mote does, so it is one: that it answers as well is its fault.
 TEST(Given, AMoteThatAlsoActsAsASinkFails) {
-  Script script;
-  script.request(0, 2, 100).request(900, 3, 7);
+  Script script = Script().request(0, 2, 100).request(900, 3, 7);
   Payload reply;
   for (const std::uint32_t word : {11U, 3U, 0U, 0U, 7U}) put16(reply, word);
   script.radio(910, 2, 3, am::kJoinReply, reply);

@@ -112,8 +112,7 @@ std::string seen(const Script& script, bool complete) {
   return out;
 }
 Script asks(bool link_ack) {
-  Script script;
-  script.join(0, 11, 3, 200);
+  Script script = Script().join(0, 11, 3, 200);
   Payload request;
   put16(request, 100);
   put(request, kDescriptor);
@@ -150,8 +149,7 @@ TEST(JoinWatch, InACaptureALinkAckProvesReception) {
 // The log of a mote shows that it joins an island whose join_reply is in no capture.
 TEST(JoinWatch, AReplyThatEscapedIsNoOthers) {
   const auto joins = [](std::uint16_t acked, double ack_ms, bool complete) {
-    Script script;
-    script.request(10, 2, 100).reply(30, 11, 2, 100, 30);
+    Script script = Script().request(10, 2, 100).reply(30, 11, 2, 100, 30);
     script.ack_join(ack_ms, acked, 2, 100).link_ack();
     script.net(2000, 2, 1, message({acked, 2}, {acked, 1}, 7));
     return found_beside(script,
@@ -185,8 +183,7 @@ TEST(JoinWatch, ACallLastsAsLongAsItsRequestsThatEscaped) {
 
 // Returns a capture of five requests, 488 ms apart, that nobody answers.
 Script five_requests(double ms) {
-  Script script;
-  script.join(0, 11, 3, 100);
+  Script script = Script().join(0, 11, 3, 100);
   for (int i = 0; i < 5; ++i) script.request(ms + 488 * i, 2, 500);
   return script.net(9000, 3, 1, message({11, 3}, {11, 1}, 7));
 }
@@ -215,8 +212,7 @@ TEST(JoinWatch, ALogThatBeginsLateHasNoCallFromBefore) {
 // The capture lacks the first ack_join, and has a repeat after the event that tells of it.
 TEST(JoinWatch, AnEventBeforeARepeatedAckJoinIsItsEvent) {
   const auto told = [](int ms) {
-    Script script;
-    script.request(10, 2, 100).reply(20, 11, 2, 100, 20);
+    Script script = Script().request(10, 2, 100).reply(20, 11, 2, 100, 20);
     ++script.dsn[2];
     script.ack_join(40, 11, 2, 100).link_ack().joined(60, 11, 2);
     script.join(1000, 11, 3, 200).net(2000, 2, 1, message({11, 2}, {11, 1}, 7));
@@ -234,8 +230,7 @@ TEST(JoinWatch, AnEventBeforeARepeatedAckJoinIsItsEvent) {
 }
 
 TEST(JoinWatch, BeforeTheFirstFrameOfARunOneMayHaveEscaped) {
-  Script script;
-  script.ack_join(0, 11, 2, 100).link_ack().joined(20, 11, 2);
+  Script script = Script().ack_join(0, 11, 2, 100).link_ack().joined(20, 11, 2);
   script.net(1000, 2, 1, message({11, 2}, {11, 1}, 7));
   const auto rules = [&](bool complete) {
     const Options options{.sniffer_complete = complete, .start_cold = true};

@@ -24,8 +24,7 @@ NetFields reliable(Address src, Address dest, std::uint16_t seq_num) {
 
 // Two motes join at 0 and 100 ms; both have sent something by 300 ms.
 Script two_motes() {
-  Script script;
-  script.join(0, 11, 2, 100).join(100, 11, 3, 200);
+  Script script = Script().join(0, 11, 2, 100).join(100, 11, 3, 200);
   script.net(200, 2, 1, update(2, 1)).up(215, update(2, 1).forwarded());
   script.net(250, 3, 1, update(3, 2)).up(265, update(3, 2).forwarded());
   return script;
@@ -208,8 +207,7 @@ const Fault kFaults[] = {
      [](Script& s) {
        NetFields net = update(2, 5);
        net.nbytes = 90;
-       s.net(420, 2, 1, net);
-       s.up(435, net.forwarded());
+       s.net(420, 2, 1, net).up(435, net.forwarded());
      }},
     {"radiated_otherwise", "N7-CONTENT",
      [](Script& s) {
@@ -248,8 +246,7 @@ const Fault kFaults[] = {
      }},
     {"island_not_taken", "N9-SET N9-SET N8-LOOP (weak)",
      [](Script& s) {
-       s.serial(400, true, am::kConfig, {10, 0, 21}).confirm();
-       s.request(420, 4, 300);
+       s.serial(400, true, am::kConfig, {10, 0, 21}).confirm().request(420, 4, 300);
        Payload p;
        for (const std::uint32_t v : {11U, 4U, 0U, 430U, 300U}) put16(p, v);
        s.radio(430, 1, 4, am::kJoinReply, p, 11);
@@ -446,16 +443,13 @@ TEST(Judge, AMemberThatAskedIsBlamedForThatAlone) {
 
 // Its timer runs on, with another number for each request, if it did not hear the link ack.
 TEST(Judge, AMemberMayAskUntilItHearsThatItsAckJoinCame) {
-  Script script;
-  script.join(0, 11, 2, 100).request(600, 2, 101);
+  Script script = Script().join(0, 11, 2, 100).request(600, 2, 101);
   script.net(700, 2, 1, update(2, 1)).up(715, update(2, 1).forwarded());
   EXPECT_EQ(found_in(script), "I:J5-STOP");
-  Script early;
-  early.join(0, 11, 2, 100).request(300, 2, 101);
+  Script early = Script().join(0, 11, 2, 100).request(300, 2, 101);
   early.net(700, 2, 1, update(2, 1)).up(715, update(2, 1).forwarded());
   EXPECT_EQ(found_in(early), "I:J5-STOP F:J5-STOP");
-  script.request(1700, 2, 102);
-  script.net(2000, 2, 1, update(2, 2)).up(2015, update(2, 2).forwarded());
+  script.request(1700, 2, 102).net(2000, 2, 1, update(2, 2)).up(2015, update(2, 2).forwarded());
   EXPECT_EQ(found_in(script), "I:J5-STOP I:J5-STOP F:J5-STOP");
 }
 
@@ -495,8 +489,7 @@ TEST(Judge, OneCauseBreaksOneRule) {
 
 // A host sends again what was not confirmed, and the sink acks what comes to it each time.
 TEST(Judge, AnAckOfWhatCameAgainIsPrompt) {
-  Script script;
-  script.join(0, 11, 2, 100);
+  Script script = Script().join(0, 11, 2, 100);
   const NetFields net = reliable({11, kNullDevid}, {11, 1}, 5);
   script.down(2000, net).confirm(false).up(2010, net.ack(9).forwarded());
   --script.serial_number;

@@ -9,8 +9,7 @@ namespace rubric::check {
 
 /// Returns the options that hold for any recording of the traffic: its statements and its testers.
 inline Options options_of(const lawful::Traffic& traffic) {
-  Options options;
-  options.stated = stated_by(traffic.stated);
+  Options options{.stated = stated_by(traffic.stated)};
   for (const lawful::NodeInfo& node : traffic.nodes) {
     if (node.role == lawful::Role::kTester) options.testers.push_back(node.id);
   }

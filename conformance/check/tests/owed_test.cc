@@ -301,8 +301,7 @@ TEST(OwedBesideCaptures, AMessageThatEscapedMayBeAcked) {
 // The sink sends message 9 up its line.
 std::string sink_acked(bool captured, bool ack) {
   const NetFields net = message({11, 1}, kPc, 9, 1);
-  Script script;
-  script.join(0, 11, 2, 100).net(900, 1, 2, message({11, 1}, {11, 2}, 8), 11);
+  Script script = Script().join(0, 11, 2, 100).net(900, 1, 2, message({11, 1}, {11, 2}, 8), 11);
   if (captured) script.up(5010, net.forwarded());
   if (ack) script.down(5050, net.ack(30)).confirm();
   script.net(6000, 1, 2, message({11, 1}, {11, 2}, 10), 11);
@@ -324,8 +323,7 @@ TEST(OwedBesideCaptures, WhatIsAckedWasSent) {
 
 // Mote 2 acks three messages; its application gets those for which `gets` has a letter.
 std::string gets_of_acked(const std::string& gets) {
-  Script script;
-  script.join(0, 11, 2, 100);
+  Script script = Script().join(0, 11, 2, 100);
   std::string log = m2(30, "> app joined(11:2 success)");
   for (std::uint16_t i = 0; i < 3; ++i) {
     const double ms = 1000 + 1000 * i;
@@ -350,8 +348,7 @@ TEST(OwedBesideCaptures, WhatIsAckedIsDelivered) {
 // The captures end at 3000 ms, and the log goes on; what send accepted then never leaves.
 TEST(OwedBesideCaptures, AMessageThatNeverLeaves) {
   const auto unsent = [](int ms) {
-    Script script;
-    script.join(0, 11, 2, 100).net(3000, 2, 1, update(2, 12));
+    Script script = Script().join(0, 11, 2, 100).net(3000, 2, 1, update(2, 12));
     return found_beside(script,
                         m2(ms, "< app send(dest=11:null app_id=mockup reliable=0 data=x0708)") +
                             m2(ms, "> app send_result(9)") + m2(5000, "< app get_clock()"),
@@ -363,8 +360,7 @@ TEST(OwedBesideCaptures, AMessageThatNeverLeaves) {
 
 // Mote 2 gets a second message that says the same, which was not captured.
 std::string gets_at(int ms) {
-  Script script;
-  script.join(0, 11, 2, 100).net(1000, 1, 2, message(kPc, {11, 2}, 9, 1), 11);
+  Script script = Script().join(0, 11, 2, 100).net(1000, 1, 2, message(kPc, {11, 2}, 9, 1), 11);
   if (ms > 1300) ++script.dsn[11 * 65536U + 1];
   script.net(2600, 1, 2, message({11, 1}, {11, 2}, 10), 11);
   script.net(3000, 2, 1, message({11, 2}, {11, 1}, 7));

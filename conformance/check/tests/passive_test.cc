@@ -33,12 +33,10 @@ NetFields to_mote(std::uint16_t seq_num) { return message({11, kNullDevid}, {11,
 
 // J6-REPORT: mote 2 is confirmed at 20 ms; mote 3 joins at 1000 ms and is reported.
 Script two_joins(const std::function<void(Script&)>& report_of_2, bool confirmed = true) {
-  Script script;
-  script.request(0, 2, 100).reply(10, 11, 2, 100, 10).ack_join(20, 11, 2, 100);
+  Script script = Script().request(0, 2, 100).reply(10, 11, 2, 100, 10).ack_join(20, 11, 2, 100);
   if (confirmed) script.link_ack();
   report_of_2(script);
-  script.join(1000, 11, 3, 200);
-  script.net(1500, 3, 1, update(3, 1)).up(1515, update(3, 1).forwarded());
+  script.join(1000, 11, 3, 200).net(1500, 3, 1, update(3, 1)).up(1515, update(3, 1).forwarded());
   return script;
 }
 
@@ -116,8 +114,7 @@ TEST(Passive, AClockThatWrapsWhileNothingIsSeen) {
 
 // N7-RADIO: a message comes down the line at 500 ms; `after` is what the sink does then.
 Script down_one(const std::function<void(Script&)>& after, bool confirmed = true) {
-  Script script;
-  script.join(0, 11, 2, 100).down(500, to_mote(7));
+  Script script = Script().join(0, 11, 2, 100).down(500, to_mote(7));
   if (confirmed) script.confirm();
   after(script);
   return script;
@@ -170,8 +167,7 @@ TEST(Passive, LifeOnTheOtherLineShowsWhatIsMissing) {
   };
   EXPECT_EQ(unseen(down_one(forwards), false), "N7-RADIO N7-RADIO");
   EXPECT_EQ(unseen(down_one(forwards), true), "N7-RADIO ") << "One recorder may end before.";
-  Script script;
-  script.join(0, 11, 2, 100).net(500, 2, 1, update(2, 8)).link_ack();
+  Script script = Script().join(0, 11, 2, 100).net(500, 2, 1, update(2, 8)).link_ack();
   EXPECT_EQ(unseen(script, false), " ") << "The end.";
   answers(script, 1200);
   EXPECT_EQ(unseen(script, false), "N6-FORWARD N6-FORWARD");
@@ -186,8 +182,7 @@ TEST(Passive, WhatNobodyConfirmedMayNotHaveArrived) {
 
 // The sink radiates a message of its own to its base station, which that one may have handed down.
 Script own_by_radio(const std::function<void(Script&)>& line, double ms = 600) {
-  Script script;
-  script.join(0, 11, 2, 100);
+  Script script = Script().join(0, 11, 2, 100);
   line(script);
   script.net(ms, 1, 2, message({11, 1}, {12, 2}, 50), 11);
   return script;
@@ -218,8 +213,7 @@ TEST(Passive, ALineOfWhichFramesAreMissingProvesNoAbsence) {
 
 // Only what the sink sends up its line is captured: its host's messages are not.
 TEST(Passive, ALineOfAForwarderLacksItsOtherClientsAndThatIsSaidOnce) {
-  Script script;
-  script.join(0, 11, 2, 100);
+  Script script = Script().join(0, 11, 2, 100);
   for (std::uint16_t i = 0; i < 20; ++i) {
     NetFields up = update(2, i);
     up.reliable = 1;
@@ -245,8 +239,7 @@ TEST(Passive, WhatASinkDidBeforeItsIslandWasSetIsOpen) {
     if (late) script.net(4990, 5, 1, away);
     script.serial(5000, true, am::kConfig, {10, 1, 11}).confirm();
     if (late) script.up(5010, away.forwarded());
-    script.join(6000, 267, 6, 55);
-    script.net(8000, 6, 1, message({267, 6}, {267, kNullDevid}, 3));
+    script.join(6000, 267, 6, 55).net(8000, 6, 1, message({267, 6}, {267, kNullDevid}, 3));
     script.up(8010, message({267, 6}, {267, kNullDevid}, 3).forwarded());
     EXPECT_EQ(failures_of(script), "") << late;
     // From then on it is known.
@@ -257,8 +250,7 @@ TEST(Passive, WhatASinkDidBeforeItsIslandWasSetIsOpen) {
 }
 
 TEST(Passive, WhatASinkReportsOutranksTheNamesThatHostsWrite) {
-  Script script;
-  script.down(50, message({12, kNullDevid}, {12, 7}, 9)).confirm();
+  Script script = Script().down(50, message({12, kNullDevid}, {12, 7}, 9)).confirm();
   script.join(100, 11, 5, 300).join(1000, 11, 6, 301);
   script.net(2000, 5, 1, message({11, 5}, {11, kNullDevid}, 44));
   script.up(2010, message({11, 5}, {11, kNullDevid}, 44).forwarded());
@@ -266,8 +258,7 @@ TEST(Passive, WhatASinkReportsOutranksTheNamesThatHostsWrite) {
 }
 
 TEST(Passive, AReceiverThatDiedIsOneFinding) {
-  Script script;
-  script.join(0, 11, 2, 100).join(100, 11, 3, 200);
+  Script script = Script().join(0, 11, 2, 100).join(100, 11, 3, 200);
   for (std::uint16_t i = 0; i < 12; ++i) {
     NetFields down = message({11, 1}, {11, 3}, i);
     down.reliable = 1;
@@ -283,8 +274,7 @@ TEST(Passive, AReceiverThatDiedIsOneFinding) {
 TEST(Passive, AnAckOnItsWayEndsNoWait) {
   const auto again = [](bool relayed, bool link_ack) {
     const NetFields asked = message({11, 2}, {11, kNullDevid}, 700, 1);
-    Script script;
-    script.join(0, 11, 2, 100);
+    Script script = Script().join(0, 11, 2, 100);
     script.net(500, 2, 1, asked).up(512, asked.forwarded()).down(540, asked.ack(40)).confirm();
     if (relayed) script.net(560, 1, 2, asked.ack(40), 11);
     if (link_ack) script.link_ack();
@@ -300,8 +290,7 @@ TEST(Passive, AnAckOnItsWayEndsNoWait) {
 
 TEST(Passive, AMemberMaySendBeforeItsAckJoinHasLeft) {
   const auto sends = [](bool acks) {
-    Script script;
-    script.request(0, 2, 100).reply(10, 11, 2, 100, 10);
+    Script script = Script().request(0, 2, 100).reply(10, 11, 2, 100, 10);
     script.net(15, 2, 1, update(2, 7)).up(27, update(2, 7).forwarded());
     if (acks) script.ack_join(35, 11, 2, 100).link_ack().joined(60, 11, 2);
     return found_in(script);
@@ -360,8 +349,7 @@ TEST(Passive, ASinkThatIsNotHeardAgainMayHaveLostItsPower) {
   const auto says = [](bool heard) {
     Script script;
     tell(script, 100, 12);
-    script.join(500, 12, 2, 100);
-    script.up(5000, message({8, 1}, {12, kNullDevid}, 6).forwarded());
+    script.join(500, 12, 2, 100).up(5000, message({8, 1}, {12, kNullDevid}, 6).forwarded());
     if (heard) {
       script.net(6000, 1, machine::kAmBroadcast,
                  message({12, 1}, {12, machine::kBroadcastDevid}, 7), 12);
@@ -380,15 +368,13 @@ TEST(Passive, ASinkThatIsToldItsIslandAgainHasNoOther) {
   script.join(0, 11, 2, 100);
   tell(script, 1000, 11);
   const NetFields asked = message({11, 2}, {12, 1}, 7, 1);
-  script.net(1100, 2, 1, asked).up(1112, asked.forwarded());
-  script.net(1200, 1, 2, asked.ack(40), 11);
+  script.net(1100, 2, 1, asked).up(1112, asked.forwarded()).net(1200, 1, 2, asked.ack(40), 11);
   EXPECT_EQ(found_in(script, false).find("F:"), std::string::npos) << found_in(script, false);
 }
 
 TEST(Passive, ASinkThatBeginsAnewActsForItsFirstIsland) {
   const auto acts = [](bool anew) {
-    Script script;
-    script.join(0, 7, 2, 100);
+    Script script = Script().join(0, 7, 2, 100);
     tell(script, 500, 11);
     script.dsn[11 * 65536U + 1] = script.dsn[7 * 65536U + 1];
     script.join(1000, 11, 3, 200);
@@ -432,8 +418,7 @@ TEST(Passive, ALineMayMissAsMuchAsTheAir) {
 // or none.
 TEST(Passive, ALineMayLoseAFewFramesAsTheAirDoes) {
   const auto finds = [](int lost, bool hole) {
-    Script script;
-    script.join(0, 11, 2, 100);
+    Script script = Script().join(0, 11, 2, 100);
     if (hole) ++script.dsn[2];
     for (std::uint16_t i = 0; i < 80; ++i) {
       const NetFields sent = update(2, static_cast<std::uint16_t>(300 + i));
@@ -488,8 +473,7 @@ TEST(Passive, ALineThatIsNotCapturedMayExplainWhatASinkDoes) {
 }
 
 TEST(Passive, AfterWrongSourcesTheRightOneIsRight) {
-  Script script;
-  script.join(0, 11, 2, 100);
+  Script script = Script().join(0, 11, 2, 100);
   const auto sends = [&](double ms, std::uint16_t devid, std::uint16_t seq_num) {
     const NetFields net = message({11, devid}, {11, kNullDevid}, seq_num);
     script.net(ms, 2, 1, net).up(ms + 12, net.forwarded());
@@ -506,8 +490,7 @@ TEST(Passive, AfterWrongSourcesTheRightOneIsRight) {
 TEST(Passive, WhatComesFromOtherIslandsIsSeenOnNoLine) {
   const auto acks = [](machine::Address of) {
     const NetFields asked = message(of, {11, kNullDevid}, 2464, 1);
-    Script script;
-    script.join(0, 11, 2, 100).down(100, asked.ack(90)).confirm();
+    Script script = Script().join(0, 11, 2, 100).down(100, asked.ack(90)).confirm();
     return found_in(script).find("F:T2-CONTENT") != std::string::npos;
   };
   EXPECT_FALSE(acks({12, 8}));
@@ -534,8 +517,7 @@ TEST(Passive, AReportThatIsUnderWayShowsTheFormerIsland) {
 
 TEST(Passive, ABufferIsNotFullOfWhatHasLeft) {
   const auto loses = [](double forward_ms) {  // A message each 60 ms; the fifth is lost.
-    Script script;
-    script.join(0, 11, 2, 100);
+    Script script = Script().join(0, 11, 2, 100);
     for (std::uint16_t i = 0; i < 16; ++i) {
       const double ms = 1000 + 60 * i;
       const NetFields net = update(2, 7 + i);

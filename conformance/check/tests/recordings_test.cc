@@ -1,5 +1,6 @@
 // Recordings as they are made: logs beside captures, or beside each other, whose clocks are others
 // or step; captures that miss a part. Nobody is blamed for these, and what is wrong is still found.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cctype>
@@ -16,6 +17,9 @@
 namespace rubric::check {
 namespace {
 
+using testing::Contains;
+using testing::HasSubstr;
+
 Run read_both(const Recorded& from, bool stamps = true) {
   const auto stamped = [stamps](Packet& packet) {
     if (!stamps) packet.time_ns = kNoTime;
@@ -26,6 +30,38 @@ Run read_both(const Recorded& from, bool stamps = true) {
 
 Report judged(const Recorded& from, bool stamps = true) {
   return judge(read_both(from, stamps), complete());
+}
+
+// Returns what is broken where `change` changes the packets of a capture, or the ticks of its log.
+template <class Change>
+std::string broken(const Recorded& run, Change change, const std::vector<std::string>& logs = {}) {
+  return broken_in(judge(read_apart(run.capture, 1, change, logs), complete()));
+}
+template <class Change>
+std::string broken_log(const Recorded& run, Change change) {
+  return broken_in(judged({run.capture, retimed(run.log, change)}));
+}
+
+// Makes stamps up to so many us late.
+auto scatters(std::int64_t most_us, std::uint32_t seed) {
+  return [most_us, random = std::minstd_rand(seed)](Packet& packet) mutable {
+    packet.time_ns += static_cast<std::int64_t>(random()) % most_us * 1000;
+    return 0;
+  };
+}
+
+bool is_radio(const Packet& packet) { return packet.framing == Framing::kRadio; }
+
+// Makes the length of the nth serial packet another one; the bytes are in `changed`.
+auto shortens(int nth, std::string& changed) {
+  return [nth, &changed, packets = 0](Packet& packet) mutable {
+    constexpr std::size_t kLengthOffset = 5;  // Of the header of a serial packet (TEP 113).
+    if (is_radio(packet) || ++packets != nth) return 0;
+    changed.assign(reinterpret_cast<const char*>(packet.bytes.data()), packet.bytes.size());
+    changed[kLengthOffset] = static_cast<char>(changed[kLengthOffset] - 1);
+    packet.bytes = Bytes(reinterpret_cast<const std::uint8_t*>(changed.data()), changed.size());
+    return 0;
+  };
 }
 
 TEST(AlignLogs, NobodyIsBlamedForTheClockOfALog) {
@@ -61,7 +97,7 @@ TEST(AlignLogs, NobodyIsBlamedForItsDrift) {
     const auto drifted = [&](int tick, const std::string&) {
       return tick + 400 + static_cast<int>(std::int64_t{tick} * ppm / 1'000'000);
     };
-    EXPECT_EQ(broken_in(judged({run.capture, retimed(run.log, drifted)})), "") << ppm;
+    EXPECT_EQ(broken_log(run, drifted), "") << ppm;
   }
 }
 
@@ -72,7 +108,7 @@ TEST(AlignLogs, WhatIsTooEarlyByAnyClockIsFound) {
       const bool it = line.find("m3") != line.npos && line.find("joined(") != line.npos;
       return tick + ticks - (it ? 9 : 0);
     };
-    EXPECT_EQ(broken_in(judged({run.capture, retimed(run.log, early)})), "J5-ACCEPT") << ticks;
+    EXPECT_EQ(broken_log(run, early), "J5-ACCEPT") << ticks;
   }
 }
 
@@ -160,8 +196,7 @@ TEST(AlignLogs, NobodyIsBlamedForTheEndOfALog) {
         }
         const check::Run run = reader.finish();
         EXPECT_EQ(broken_in(judge(run, {})), "") << scenario << " " << cut << " " << head;
-        Options cold;
-        cold.start_cold = !head;
+        Options cold{.start_cold = !head};
         EXPECT_EQ(broken_in(judge(run, cold)), "") << scenario << " " << cut << " " << head;
       }
     }
@@ -188,8 +223,7 @@ TEST(AlignLogs, NobodyIsBlamedForAClockThatSteps) {
       const auto step = [&](int tick, const std::string&) {
         return tick + (tick > 3000 ? ticks : 0);
       };
-      EXPECT_EQ(broken_in(judged({run.capture, retimed(run.log, step)})), "")
-          << scenario << " " << ticks;
+      EXPECT_EQ(broken_log(run, step), "") << scenario << " " << ticks;
     }
   }
 }
@@ -198,18 +232,11 @@ TEST(AlignLogs, NobodyIsBlamedForStampsThatScatterOrAreRounded) {
   for (const char* scenario : {"timeline", "home", "open_door", "inter_island", "two_sinks"}) {
     const Recorded run = recorded(scenario);
     for (const std::int64_t most_us : {1000, 3000, 10'000, 20'000}) {
-      std::minstd_rand random(1);
-      const auto late = [&](Packet& packet) {
-        packet.time_ns += static_cast<std::int64_t>(random()) % most_us * 1000;
-        return 0;
-      };
-      EXPECT_EQ(broken_in(judge(read_apart(run.capture, 1, late, {run.log}), complete())), "")
-          << scenario << " " << most_us;
+      EXPECT_EQ(broken(run, scatters(most_us, 1), {run.log}), "") << scenario << " " << most_us;
     }
     for (const int ticks : {10, 20}) {
       const auto rounded = [&](int tick, const std::string&) { return tick / ticks * ticks; };
-      EXPECT_EQ(broken_in(judged({run.capture, retimed(run.log, rounded)})), "")
-          << scenario << " " << ticks;
+      EXPECT_EQ(broken_log(run, rounded), "") << scenario << " " << ticks;
     }
   }
 }
@@ -271,10 +298,8 @@ TEST(AlignLogs, NobodyIsBlamedForWhatAShortLogDoesNotSay) {
     for (const int cut : {2500, 4100, 5500, 6000}) {
       const auto head = [&](int tick, const std::string&) { return tick > cut ? -1 : tick; };
       const auto tail = [&](int tick, const std::string&) { return tick < cut ? -1 : tick; };
-      EXPECT_EQ(broken_in(judged({run.capture, retimed(run.log, head)})), "")
-          << scenario << ", the log until " << cut;
-      EXPECT_EQ(broken_in(judged({run.capture, retimed(run.log, tail)})), "")
-          << scenario << ", the log from " << cut;
+      EXPECT_EQ(broken_log(run, head), "") << scenario << ", the log until " << cut;
+      EXPECT_EQ(broken_log(run, tail), "") << scenario << ", the log from " << cut;
       std::int64_t begin_ns = 0;
       const auto late = [&](Packet& packet) {
         if (begin_ns == 0) begin_ns = packet.time_ns;
@@ -283,8 +308,7 @@ TEST(AlignLogs, NobodyIsBlamedForWhatAShortLogDoesNotSay) {
       EXPECT_EQ(broken_in(judge(read_apart(run.capture, 1, late, {run.log}), {})), "")
           << scenario << ", the capture from " << cut;
       const auto early = [&](Packet& packet) { return late(packet) < 0 ? 0 : -1; };
-      EXPECT_EQ(broken_in(judge(read_apart(run.capture, 1, early, {run.log}), complete())), "")
-          << scenario << ", the capture until " << cut;
+      EXPECT_EQ(broken(run, early, {run.log}), "") << scenario << ", the capture until " << cut;
     }
   }
 }
@@ -298,25 +322,15 @@ TEST(AlignLogs, WhatAShortLogShowsIsFound) {
   const std::string other = retimed(std::regex_replace(run.log, joined, ""), head);
   EXPECT_EQ(broken_in(judged({run.capture, other})), "J5-SUCCESS");
   std::string changed;
-  int packets = 0;
-  const auto shortened = [&](Packet& packet) {
-    constexpr std::size_t kLengthOffset = 5;  // Of the header of a serial packet (TEP 113).
-    if (packet.framing == Framing::kRadio || ++packets != 20) return 0;
-    changed.assign(reinterpret_cast<const char*>(packet.bytes.data()), packet.bytes.size());
-    changed[kLengthOffset] = static_cast<char>(changed[kLengthOffset] - 1);
-    packet.bytes = Bytes(reinterpret_cast<const std::uint8_t*>(changed.data()), changed.size());
-    return 0;
-  };
   const auto early = [&](int tick, const std::string&) { return tick > 5000 ? -1 : tick; };
-  const check::Run both = read_apart(run.capture, 1, shortened, {retimed(run.log, early)});
-  EXPECT_EQ(broken_in(judge(both, complete())), "WIRE-AM-LENGTH");
+  EXPECT_EQ(broken(run, shortens(20, changed), {retimed(run.log, early)}), "WIRE-AM-LENGTH");
 }
 
 // A log whose clock steps is judged on either side of the step, and not across it.
 TEST(AlignLogs, ALogWhoseClockStepsForth) {
   const Recorded run = recorded("hospital");
   const auto step = [](int tick, const std::string&) { return tick > 700 ? tick + 3072 : tick; };
-  EXPECT_EQ(broken_in(judged({run.capture, retimed(run.log, step)})), "");
+  EXPECT_EQ(broken_log(run, step), "");
   const std::string again = run.log + "@10300 m8 > app joined(address=11:8 result=success)\n";
   EXPECT_EQ(broken_in(judged({run.capture, retimed(again, step)})), "J5-ONCE");
 }
@@ -361,8 +375,6 @@ TEST(AlignLogs, EachSecondTickThatIsLeftOutIsFound) {
 constexpr const char* kScenarios[] = {"timeline", "home", "open_door", "two_sinks", "hospital"};
 
 int in_one_file(Packet&) { return 0; }
-
-bool is_radio(const Packet& packet) { return packet.framing == Framing::kRadio; }
 
 TEST(LawfulCaptures, ATapBeginsLateOrEndsEarly) {
   for (const char* scenario : kScenarios) {
@@ -427,12 +439,7 @@ TEST(LawfulCaptures, StampsScatter) {
     const Recorded run = recorded(scenario);
     for (const std::int64_t most_us : {1000, 10'000, 20'000}) {
       for (const std::uint32_t seed : {1U, 2U, 3U}) {
-        std::minstd_rand random(seed);
-        const auto late = [&](Packet& packet) {
-          packet.time_ns += static_cast<std::int64_t>(random()) % most_us * 1000;
-          return 0;
-        };
-        EXPECT_EQ(broken_in(judge(read_apart(run.capture, 1, late, {}), complete())), "")
+        EXPECT_EQ(broken(run, scatters(most_us, seed)), "")
             << scenario << " " << most_us << " " << seed;
       }
     }
@@ -467,8 +474,7 @@ TEST(LawfulCaptures, ASinkIsSlow) {
         packet.time_ns += is_radio(packet) ? 0 : std::int64_t{ms} * 1'000'000;
         return 0;
       };
-      EXPECT_EQ(broken_in(judge(read_apart(run.capture, 1, late, {}), complete())), "")
-          << scenario << " " << ms;
+      EXPECT_EQ(broken(run, late), "") << scenario << " " << ms;
     }
   }
 }
@@ -484,8 +490,7 @@ TEST(LawfulCaptures, TheClockOfOneTapSteps) {
           packet.time_ns += moves ? std::int64_t{ms} * 1'000'000 : 0;
           return 0;
         };
-        EXPECT_EQ(broken_in(judge(read_apart(run.capture, 1, stepped, {}), complete())), "")
-            << scenario << " " << ms << " from packet " << from;
+        EXPECT_EQ(broken(run, stepped), "") << scenario << " " << ms << " from packet " << from;
       }
     }
   }
@@ -519,8 +524,7 @@ TEST(LawfulCaptures, FramesComeDamaged) {
         if (is_radio(packet) && ++frames % part == 0) packet.fcs ^= 1;
         return 0;
       };
-      EXPECT_EQ(broken_in(judge(read_apart(run.capture, 1, damaged, {}), complete())), "")
-          << scenario << " " << part;
+      EXPECT_EQ(broken(run, damaged), "") << scenario << " " << part;
     }
   }
 }
@@ -529,53 +533,34 @@ TEST(LawfulCaptures, FramesComeDamaged) {
 TEST(LawfulCaptures, AnotherNetworkIsInTheAir) {
   for (const char* scenario : kScenarios) {
     const Recorded run = recorded(scenario);
-    const std::unique_ptr<Reader> packets = make_reader(InputFormat::kPcapng, {});
     RunReader reader;
     const std::uint32_t file = reader.open("capture");
     int frames = 0;
-    auto take = [&](const Packet& packet) {
-      reader.take(file, packet, packets->interfaces()[packet.interface_id].name);
+    each_packet(run.capture, [&](const Packet& packet, const std::string& interface) {
+      reader.take(file, packet, interface);
       constexpr std::size_t kPanOffset = 3;
       if (!is_radio(packet) || packet.bytes.size() < 12 || ++frames % 5 != 0) return;
-      std::string bytes(reinterpret_cast<const char*>(packet.bytes.data()), packet.bytes.size());
-      bytes[kPanOffset] = '\x33';
+      std::vector<std::uint8_t> bytes(packet.bytes.begin(), packet.bytes.end());
+      bytes[kPanOffset] = 0x33;
       Packet other = packet;
-      other.bytes = Bytes(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
+      other.bytes = Bytes(bytes.data(), bytes.size());
       other.fcs = kAbsent;
       other.time_ns += 1000;
-      reader.take(file, other, packets->interfaces()[packet.interface_id].name);
-    };
-    packets->feed(
-        Bytes(reinterpret_cast<const std::uint8_t*>(run.capture.data()), run.capture.size()),
-        PacketSink(take));
-    packets->finish(PacketSink(take));
+      reader.take(file, other, interface);
+    });
     const Report report = judge(reader.finish(), complete());
     const Report alone = judge(read_apart(run.capture, 1, in_one_file, {}), complete());
     EXPECT_EQ(broken_in(report), "") << scenario;
     EXPECT_EQ(report.verdict, alone.verdict) << scenario;
-    bool said = false;
-    for (const std::string& fact : report.facts) {
-      said = said || fact.find("PAN 0x0033") != fact.npos;
-    }
-    EXPECT_TRUE(said) << scenario;
+    EXPECT_THAT(report.facts, Contains(HasSubstr("PAN 0x0033"))) << scenario;
   }
 }
 
 TEST(LawfulCaptures, ALengthThatIsNotThatOfThePacketIsFound) {
   const Recorded run = recorded("timeline");
   std::string changed;
-  int packets = 0;
-  const auto shortened = [&](Packet& packet) {
-    constexpr std::size_t kLengthOffset = 5;  // Of the header of a serial packet (TEP 113).
-    if (is_radio(packet) || ++packets != 7) return 0;
-    changed.assign(reinterpret_cast<const char*>(packet.bytes.data()), packet.bytes.size());
-    changed[kLengthOffset] = static_cast<char>(changed[kLengthOffset] - 1);
-    packet.bytes = Bytes(reinterpret_cast<const std::uint8_t*>(changed.data()), changed.size());
-    return 0;
-  };
-  EXPECT_EQ(broken_in(judge(read_apart(run.capture, 1, shortened, {}), complete())),
-            "WIRE-AM-LENGTH");
-  EXPECT_EQ(broken_in(judge(read_apart(run.capture, 1, in_one_file, {}), complete())), "");
+  EXPECT_EQ(broken(run, shortens(7, changed)), "WIRE-AM-LENGTH");
+  EXPECT_EQ(broken(run, in_one_file), "");
 }
 
 }  // namespace

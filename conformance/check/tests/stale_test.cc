@@ -17,16 +17,13 @@ NetFields whole(NetFields net) {
 Report report_of(const Script& script) { return judge(script.run, complete()); }
 
 TEST(Stale, ExactMessagesHaveNoNote) {
-  Script script;
-  script.join(0, 11, 2, 100);
+  Script script = Script().join(0, 11, 2, 100);
   script.net(200, 2, 1, update(2, 1)).up(215, whole(update(2, 1)));
   EXPECT_TRUE(report_of(script).findings.empty());
 }
 
 TEST(Stale, WhatIsCutShortOnASerialLineIsWeakOnceASender) {
-  Script script;
-  script.join(0, 11, 2, 100);
-  script.net(200, 2, 1, update(2, 1)).up(215, update(2, 1));
+  Script script = Script().join(0, 11, 2, 100).net(200, 2, 1, update(2, 1)).up(215, update(2, 1));
   script.net(2000, 2, 1, update(2, 2)).up(2015, update(2, 2));
   const Report report = report_of(script);
   ASSERT_EQ(report.findings.size(), 1U);
@@ -36,8 +33,7 @@ TEST(Stale, WhatIsCutShortOnASerialLineIsWeakOnceASender) {
 }
 
 TEST(Stale, SerialLinesAreNotedOnce) {
-  Script script;
-  script.join(0, 11, 2, 100);
+  Script script = Script().join(0, 11, 2, 100);
   script.net(200, 2, 1, update(2, 1)).up(215, update(2, 1).forwarded());
   const std::uint64_t first = script.run.seen.back().place.frame;
   script.net(2000, 2, 1, update(2, 2)).up(2015, update(2, 2).forwarded());
@@ -54,8 +50,7 @@ TEST(Stale, SerialLinesAreNotedOnce) {
 }
 
 TEST(Stale, FramesOnTheAirAreNotedOnce) {
-  Script script;
-  script.join(0, 11, 2, 100);
+  Script script = Script().join(0, 11, 2, 100);
   NetFields net = update(2, 1);
   net.size = 40;
   script.net(200, 2, 1, net).up(215, whole(update(2, 1)));

@@ -48,8 +48,7 @@ TEST(Stated, TheResponseTimeIsTheProfilesUnlessStated) {
 // A sink that surely got a reliable message at 1000 ms sends its ack, or another frame and no ack,
 // `later_ms` after its start.
 Report unacked(double later_ms, const Options& options, bool ack = false) {
-  Script script;
-  script.join(0, 11, 2, 100);
+  Script script = Script().join(0, 11, 2, 100);
   NetFields net{.dest = {11, 1}, .src = {11, 2}, .reliable = 1, .seq_num = 5};
   script.radio(1000, 2, 1, am::kNet, net.bytes(), 0, true).link_ack();
   NetFields other{.dest = {11, 2}, .src = {11, 1}, .seq_num = 900};
@@ -185,8 +184,7 @@ TEST(Stated, ANodeIsThatOfTheLogThatHasLinesOfIt) {
 // The host sets the island at 1100 ms; at 2600 ms the sink still forwards for the former one.
 TEST(Stated, ASinkTakesItsIslandWithinTheResponseTime) {
   const auto found = [](std::int64_t response_ms) {
-    Script script;
-    script.join(0, 11, 2, 100);
+    Script script = Script().join(0, 11, 2, 100);
     script.serial(1100, true, am::kConfig, {10, 0, 13}).confirm();
     script.net(2600, 2, 1, update(2, 7)).up(2612, update(2, 7).forwarded());
     return found_in(script, {.start_cold = true, .response_us = 1000 * response_ms});

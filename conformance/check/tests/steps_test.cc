@@ -45,8 +45,7 @@ void send(Script& script, int first, int last) {
 
 // Two motes join, at 0 and 1000 ms; the first one sends messages.
 Script busy() {
-  Script script;
-  script.join(0, 11, 2, 100);
+  Script script = Script().join(0, 11, 2, 100);
   send(script, 1, 2);
   script.join(1000, 11, 3, 200);
   send(script, 3, 19);
@@ -110,8 +109,7 @@ TEST(Steps, ALinkAckThatComesMuchLaterShowsOneForth) {
 
 // Two replies of a sink, between which a link ack comes so much later than it should.
 check::Run replies_around(double forth_ms, std::uint32_t second_clock_ms) {
-  Script script;
-  script.join(0, 11, 2, 100);
+  Script script = Script().join(0, 11, 2, 100);
   script.join(1000, 11, 3, 200);  // Says 1010.
   send(script, 3, 19);
   script.request(7700, 4, 300).reply(7710, 11, 4, 300, second_clock_ms);
@@ -162,8 +160,7 @@ TEST(Steps, ASlowNodeThatStatesItShowsNone) {
 
 // A lawful mote repeats its ack_join for less than a second, and need not repeat it at all.
 TEST(Steps, ALateAckJoinBetweenOrdinarySilencesShowsNone) {
-  Script script;
-  script.join(0, 11, 2, 100).join(100, 11, 3, 200);
+  Script script = Script().join(0, 11, 2, 100).join(100, 11, 3, 200);
   send(script, 1, 3);
   script.ack_join(1590, 11, 3, 200);
   send(script, 4, 19);

@@ -170,8 +170,7 @@ TEST(SynapticTicks, AStartShiftsNoOtherChannel) {
 // Of two channels of a mote one has data that the link repeats; those of the other wait meanwhile.
 TEST(SynapticTicks, DataWaitWhileTheLinkRepeatsOthers) {
   const auto repeated = [](int times) {
-    Script script;
-    script.join(0, 11, 2, 100).join(60, 11, 3, 200);
+    Script script = Script().join(0, 11, 2, 100).join(60, 11, 3, 200);
     const auto data = [&](double ms, std::uint16_t to, std::uint16_t number) {
       NetFields net = message({11, 2}, {11, to}, number);
       net.body.assign(4, 0);
@@ -199,8 +198,7 @@ TEST(SynapticTicks, DataWaitWhileTheLinkRepeatsOthers) {
 // The data of the first tick escaped, so that nothing was seen to leave since the last write.
 TEST(SynapticTicks, DataThatEscapedWereStillOwed) {
   const auto saves = [](bool escapes) {
-    Script script;
-    script.join(0, 11, 2, 100);
+    Script script = Script().join(0, 11, 2, 100);
     const auto data = [&](double ms, std::uint16_t number) {
       NetFields net = message({11, 2}, {11, 1}, number);
       net.body = {0, 0, 0x80, 0x3F};

@@ -74,8 +74,7 @@ TEST(Times, AFormatIsBrokenAtAnyTime) {
 }
 
 TEST(Times, AFileAloneWithoutThemKeepsItsOrder) {
-  Script script;
-  script.joined(40, 11, 2).joined(50, 11, 2);
+  Script script = Script().joined(40, 11, 2).joined(50, 11, 2);
   lose_serial_times(script.run);
   Options options{.start_cold = true};
   // Nothing is heard on the air, so an ack_join may always have escaped.

@@ -99,9 +99,7 @@ TEST(Awaited, T3_Timeout_NoneInAProfileWithout) {
 
 TEST(Awaited, FullListKeepsWhatItHas) {
   AwaitedList list;
-  for (std::uint16_t i = 0; i < kAwaitedMax + 1; ++i) {
-    sent(list, Profile{}, 0, i, kControl, kMote4);
-  }
+  for (std::uint16_t i = 0; i < kAwaitedMax + 1; ++i) sent(list, Profile{}, 0, i, kControl, kMote4);
   EXPECT_EQ(list.size(), kAwaitedMax);
   EXPECT_FALSE(is_awaited(list, kAwaitedMax));
   EXPECT_TRUE(is_awaited(list, 0));

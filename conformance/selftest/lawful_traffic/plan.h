@@ -122,6 +122,8 @@ struct Plan {
   bool capture_radio = true;
   bool capture_serial = true;
   bool all_well_formed = true;
+
+  void at(std::int64_t time_us, Script what) { script.emplace_back(time_us, std::move(what)); }
 };
 
 }  // namespace rubric::lawful

@@ -18,19 +18,17 @@ void foreign_protocols(Plan& plan, Random& random) {
     const std::uint16_t dst = random.chance(60) ? kAllNodes : std::uint16_t{kFirstForeignAm};
     Octets payload(random.below(40) + 1);
     for (std::uint8_t& byte : payload) byte = random.byte();
-    plan.script.push_back({time, [=](World& world) {
-                             world.outsider(am, Role::kOutsider).send(dst, type, payload);
-                           }});
+    plan.at(time,
+            [=](World& world) { world.outsider(am, Role::kOutsider).send(dst, type, payload); });
   }
 }
 void rssi_beacons(Plan& plan, Random&) {
   for (std::int64_t time = 100'000; time < plan.end_us; time += 500'000) {
     for (std::uint8_t anchor = 1; anchor <= kAnchors; ++anchor) {
-      plan.script.push_back(
-          {time + anchor * 15'000, [anchor](World& world) {
-             world.outsider(kFirstAnchorAm + anchor, Role::kOutsider)
-                 .send(kAllNodes, static_cast<std::uint8_t>(rubicon::AmType::kTemp), {anchor});
-           }});
+      plan.at(time + anchor * 15'000, [anchor](World& world) {
+        world.outsider(kFirstAnchorAm + anchor, Role::kOutsider)
+            .send(kAllNodes, static_cast<std::uint8_t>(rubicon::AmType::kTemp), {anchor});
+      });
     }
   }
 }

@@ -121,8 +121,8 @@ void listed_mote_reboots(Plan& plan, Random& random) {
   plan.end_us = 12'000'000;
   plan.traits.join_calls = 2;
   const auto time = random.between(4'000'000, 5'000'000);
-  plan.script.push_back({time, [](World& world) { world.mote(0).switch_off(); }});
-  plan.script.push_back({time + 300'000, [](World& world) { world.mote(0).boot(); }});
+  plan.at(time, [](World& world) { world.mote(0).switch_off(); });
+  plan.at(time + 300'000, [](World& world) { world.mote(0).boot(); });
 }
 void interleaved_joins(Plan& plan, Random& random) {
   plan.motes.clear();
@@ -165,14 +165,14 @@ void set_island_first(Plan& plan, Random&) {
     mote.boot_us += 400'000;
     mote.any_sink = true;
   }
-  plan.script.push_back({100'000, [](World& world) { world.base(0).set_island(12); }});
+  plan.at(100'000, [](World& world) { world.base(0).set_island(12); });
 }
 void island_change_forgets(Plan& plan, Random&) {
   plan.end_us = 12'000'000;
   for (MotePlan& mote : plan.motes) mote.any_sink = true;
-  plan.script.push_back({4'000'000, [](World& world) { world.base(0).set_island(13); }});
-  plan.script.push_back({6'000'000, [](World& world) { world.mote(0).switch_off(); }});
-  plan.script.push_back({6'200'000, [](World& world) { world.mote(0).boot(); }});
+  plan.at(4'000'000, [](World& world) { world.base(0).set_island(13); });
+  plan.at(6'000'000, [](World& world) { world.mote(0).switch_off(); });
+  plan.at(6'200'000, [](World& world) { world.mote(0).boot(); });
 }
 void island_change_keeps(Plan& plan, Random& random) {
   island_change_forgets(plan, random);

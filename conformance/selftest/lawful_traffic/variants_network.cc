@@ -13,14 +13,13 @@ void everybody_sends(Plan& plan, std::uint16_t pid, std::uint16_t devid, bool re
   std::int64_t time = 3'000'000;
   for (int round = 0; round < 2; ++round) {
     for (int who = 0; who < 3; ++who) {
-      plan.script.push_back(
-          {time, [pid, devid, reliable, who](World& world) {
-             if (who == 0 && !world.mote(0).joined()) return;
-             Endpoint* const senders[] = {&world.mote(0), &world.sink(0), &world.base(0)};
-             Endpoint& from = *senders[who];
-             const Address dest{pid == 0 ? from.address().pid : pid, devid};
-             from.send(dest, kMockupType, {0xB0, static_cast<std::uint8_t>(who)}, reliable);
-           }});
+      plan.at(time, [pid, devid, reliable, who](World& world) {
+        if (who == 0 && !world.mote(0).joined()) return;
+        Endpoint* const senders[] = {&world.mote(0), &world.sink(0), &world.base(0)};
+        Endpoint& from = *senders[who];
+        const Address dest{pid == 0 ? from.address().pid : pid, devid};
+        from.send(dest, kMockupType, {0xB0, static_cast<std::uint8_t>(who)}, reliable);
+      });
       time += 600'000;
     }
   }
@@ -57,20 +56,19 @@ void wide_to_sink(Plan& plan, Random& random) {
 /// Makes motes of the first island send to `devid` of the second, or to its motes if devid is 0.
 void across(Plan& plan, std::uint16_t devid, bool reliable) {
   for (std::int64_t time = 2'600'000; time < 7'500'000; time += 700'000) {
-    plan.script.push_back({time, [devid, reliable](World& world) {
-                             Mote* from = nullptr;
-                             Mote* to = nullptr;
-                             for (std::size_t i = 0; i < world.motes(); ++i) {
-                               Mote& mote = world.mote(i);
-                               if (!mote.joined()) continue;
-                               (mote.address().pid == world.sink(0).address().pid ? from : to) =
-                                   &mote;
-                             }
-                             if (from == nullptr || to == nullptr) return;
-                             const std::uint16_t pid = to->address().pid;
-                             const Address dest{pid, devid == 0 ? to->am() : devid};
-                             from->send(dest, kMockupType, {0xC0, 1, 2, 3}, reliable);
-                           }});
+    plan.at(time, [devid, reliable](World& world) {
+      Mote* from = nullptr;
+      Mote* to = nullptr;
+      for (std::size_t i = 0; i < world.motes(); ++i) {
+        Mote& mote = world.mote(i);
+        if (!mote.joined()) continue;
+        (mote.address().pid == world.sink(0).address().pid ? from : to) = &mote;
+      }
+      if (from == nullptr || to == nullptr) return;
+      const std::uint16_t pid = to->address().pid;
+      const Address dest{pid, devid == 0 ? to->am() : devid};
+      from->send(dest, kMockupType, {0xC0, 1, 2, 3}, reliable);
+    });
   }
 }
 void other_mote_ignored(Plan& plan, Random& random) {

@@ -12,45 +12,38 @@ constexpr std::int64_t kWriteUs = 210'000;
 /// the sink; the sink: one to mote 4. Values change now and then.
 void channels(Plan& plan, bool power_save, int change_percent) {
   plan.chats = 6;
-  plan.script.push_back({kStartUs, [power_save](World& world) {
-                           if (!world.mote(0).joined() || !world.mote(1).joined()) return;
-                           Mote& first = world.mote(0);
-                           Mote& second = world.mote(1);
-                           const Address sink = world.sink(0).address();
-                           first.start(first.create_out(sink, 3, power_save));
-                           first.start(first.create_out(second.address(), 10, power_save));
-                           second.start(second.create_out(second.address(), 2, power_save));
-                           second.start(second.create_out(sink, 1, power_save));
-                           world.sink(0).start(
-                               world.sink(0).create_out(world.mote(0).address(), 2, power_save));
-                         }});
+  plan.at(kStartUs, [power_save](World& world) {
+    if (!world.mote(0).joined() || !world.mote(1).joined()) return;
+    Mote& first = world.mote(0);
+    Mote& second = world.mote(1);
+    const Address sink = world.sink(0).address();
+    first.start(first.create_out(sink, 3, power_save));
+    first.start(first.create_out(second.address(), 10, power_save));
+    second.start(second.create_out(second.address(), 2, power_save));
+    second.start(second.create_out(sink, 1, power_save));
+    world.sink(0).start(world.sink(0).create_out(world.mote(0).address(), 2, power_save));
+  });
   for (std::int64_t time = kStartUs + kWriteUs; time < plan.end_us; time += kWriteUs) {
-    plan.script.push_back({time, [change_percent](World& world) {
-                             if (!world.mote(0).joined() || !world.mote(1).joined()) return;
-                             const auto value = [&world] {
-                               return static_cast<float>(world.random().below(4096)) / 16;
-                             };
-                             const auto changes = [&] {
-                               return world.random().chance(change_percent);
-                             };
-                             const std::size_t pos = world.random().below(3);
-                             if (changes()) world.mote(0).write_value(0, pos, value());
-                             if (changes()) world.mote(0).write_value(1, 9, value());
-                             if (changes()) world.mote(1).write_value(1, 0, value());
-                             if (changes()) world.sink(0).write_value(0, 1, value());
-                           }});
+    plan.at(time, [change_percent](World& world) {
+      if (!world.mote(0).joined() || !world.mote(1).joined()) return;
+      const auto value = [&world] { return static_cast<float>(world.random().below(4096)) / 16; };
+      const auto changes = [&] { return world.random().chance(change_percent); };
+      const std::size_t pos = world.random().below(3);
+      if (changes()) world.mote(0).write_value(0, pos, value());
+      if (changes()) world.mote(0).write_value(1, 9, value());
+      if (changes()) world.mote(1).write_value(1, 0, value());
+      if (changes()) world.sink(0).write_value(0, 1, value());
+    });
   }
 }
 /// Makes mote 2 stop its first channel for a while.
 void stop_and_start(Plan& plan) {
-  plan.script.push_back({5'000'000, [](World& world) {
-                           if (world.mote(0).joined() && world.mote(1).joined())
-                             world.mote(0).stop(0);
-                         }});
-  plan.script.push_back({7'100'000, [](World& world) {
-                           if (world.mote(0).joined() && world.mote(1).joined())
-                             world.mote(0).start(0);
-                         }});
+  plan.at(5'000'000, [](World& world) {
+    if (world.mote(0).joined() && world.mote(1).joined()) world.mote(0).stop(0);
+  });
+  plan.at(7'100'000, [](World& world) {
+    if (world.mote(0).joined() && world.mote(1).joined()) world.mote(0).start(0);
+  });
 }
 
 void esn_data(Plan& plan, Random&) { channels(plan, false, 60); }

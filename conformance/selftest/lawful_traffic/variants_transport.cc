@@ -17,11 +17,10 @@ void lose_a_message(Plan& plan) {
   plan.losses.push_back([](World& world, const RadioFrame& frame, const Device&) {
     return frame.src == 3 && world.now_us() > 3'000'000 && world.now_us() < 3'500'000;
   });
-  plan.script.push_back({3'100'000, [](World& world) {
-                           if (!world.mote(1).joined()) return;
-                           world.mote(1).send(world.base(0).address(), kMockupMessage,
-                                              {0xA2, 1, 2, 3, 4, 5, 6, 7}, true);
-                         }});
+  plan.at(3'100'000, [](World& world) {
+    if (!world.mote(1).joined()) return;
+    world.mote(1).send(world.base(0).address(), kMockupMessage, {0xA2, 1, 2, 3, 4, 5, 6, 7}, true);
+  });
 }
 void ack_deployed(Plan& plan, Random&) { plan.chats = 25; }
 void ack_paper(Plan& plan, Random&) {
@@ -60,18 +59,18 @@ void app_resends_same_seq(Plan& plan, Random& random) {
 }
 void unknown_app(Plan& plan) {
   const Octets body{1, 2, 3};
-  plan.script.push_back({3'000'000, [body](World& world) {
-                           if (!world.mote(0).joined()) return;
-                           world.base(0).send(world.mote(0).address(), kUnknownApp, body, true);
-                         }});
-  plan.script.push_back({3'300'000, [body](World& world) {
-                           if (!world.mote(0).joined()) return;
-                           world.mote(0).send(world.sink(0).address(), kUnknownApp, body, true);
-                         }});
-  plan.script.push_back({3'600'000, [body](World& world) {
-                           if (!world.mote(1).joined()) return;
-                           world.mote(1).send(world.base(0).address(), kUnknownApp, body, true);
-                         }});
+  plan.at(3'000'000, [body](World& world) {
+    if (!world.mote(0).joined()) return;
+    world.base(0).send(world.mote(0).address(), kUnknownApp, body, true);
+  });
+  plan.at(3'300'000, [body](World& world) {
+    if (!world.mote(0).joined()) return;
+    world.mote(0).send(world.sink(0).address(), kUnknownApp, body, true);
+  });
+  plan.at(3'600'000, [body](World& world) {
+    if (!world.mote(1).joined()) return;
+    world.mote(1).send(world.base(0).address(), kUnknownApp, body, true);
+  });
 }
 void unknown_app_acked(Plan& plan, Random&) { unknown_app(plan); }
 void unknown_app_silent(Plan& plan, Random&) {
@@ -97,8 +96,8 @@ Script patched(std::size_t index, std::size_t offset, std::uint8_t value) {
 void tester_reliable_dropped(Plan& plan, Random&) {
   plan.chats = 0;
   plan.all_well_formed = false;
-  plan.script.push_back({3'000'000, patched(0, 8, 2)});
-  plan.script.push_back({4'000'000, patched(1, 8, 255)});
+  plan.at(3'000'000, patched(0, 8, 2));
+  plan.at(4'000'000, patched(1, 8, 255));
 }
 void tester_reliable_taken(Plan& plan, Random& random) {
   tester_reliable_dropped(plan, random);
@@ -109,7 +108,7 @@ void tester_nbytes(Plan& plan, Random&) {
   const std::uint8_t values[] = {0, 1, 8, 60, 103, 255};
   std::int64_t time = 3'000'000;
   for (const std::uint8_t value : values) {
-    plan.script.push_back({time, patched(0, 11, value)});
+    plan.at(time, patched(0, 11, value));
     time += 350'000;
   }
 }
@@ -118,17 +117,17 @@ void host_nbytes(Plan& plan, Random&) {
   const std::uint8_t values[] = {0, 1, 103, 255};
   std::int64_t time = 3'000'000;
   for (const std::uint8_t value : values) {
-    plan.script.push_back({time, [value](World& world) {
-                             NetMessage message;
-                             message.dest = {world.sink(0).address().pid, world.mote(0).am()};
-                             message.src = world.base(0).address();
-                             message.payload = app_msg(rubicon::Component::kConnless,
-                                                       kMockupMessage, demo_body(0x0041, 600));
-                             Octets bytes = encode(message);
-                             bytes[11] = value;
-                             bytes.resize(114);
-                             world.base(0).raw(static_cast<std::uint8_t>(AmType::kNet), bytes);
-                           }});
+    plan.at(time, [value](World& world) {
+      NetMessage message;
+      message.dest = {world.sink(0).address().pid, world.mote(0).am()};
+      message.src = world.base(0).address();
+      message.payload =
+          app_msg(rubicon::Component::kConnless, kMockupMessage, demo_body(0x0041, 600));
+      Octets bytes = encode(message);
+      bytes[11] = value;
+      bytes.resize(114);
+      world.base(0).raw(static_cast<std::uint8_t>(AmType::kNet), bytes);
+    });
     time += 400'000;
   }
 }
@@ -142,12 +141,11 @@ void seq_ffff(Plan& plan, Random&) {
 void answer_before_ack(Plan& plan, Random&) {
   plan.traits.answer_before_ack = true;
   for (std::int64_t time = 3'000'000; time < 6'000'000; time += 700'000) {
-    plan.script.push_back({time, [](World& world) {
-                             Mote& mote = world.mote(world.random().below(world.motes()));
-                             if (!mote.joined()) return;
-                             world.base(0).send(mote.address(), kMockupMessage,
-                                                demo_body(0x0041, 600), true);
-                           }});
+    plan.at(time, [](World& world) {
+      Mote& mote = world.mote(world.random().below(world.motes()));
+      if (!mote.joined()) return;
+      world.base(0).send(mote.address(), kMockupMessage, demo_body(0x0041, 600), true);
+    });
   }
 }
 void message_to_nonmember(Plan& plan, Random&) {
@@ -157,11 +155,11 @@ void message_to_nonmember(Plan& plan, Random&) {
     const Address dest{world.sink(0).address().pid, world.mote(0).am()};
     world.base(0).send(dest, kMockupMessage, {0xA0, 1}, true);
   };
-  plan.script.push_back({800'000, to_mote});
-  plan.script.push_back({2'050'000, [](World& world) {
-                           const Address all{world.sink(0).address().pid, kAllNodes};
-                           world.sink(0).send(all, kMockupMessage, {0xA0, 2}, false);
-                         }});
+  plan.at(800'000, to_mote);
+  plan.at(2'050'000, [](World& world) {
+    const Address all{world.sink(0).address().pid, kAllNodes};
+    world.sink(0).send(all, kMockupMessage, {0xA0, 2}, false);
+  });
 }
 void in_full(Plan& plan, Random&) {
   plan.traits.in_buffer = 2;
@@ -170,27 +168,25 @@ void in_full(Plan& plan, Random&) {
   plan.traits.app_resends = 1;
   plan.foreign_chats = false;
   for (const std::int64_t time : {3'000'000, 5'000'000}) {
-    plan.script.push_back(
-        {time, [](World& world) {
-           for (std::uint8_t i = 0; i < 5; ++i) {
-             for (std::size_t m = 0; m < world.motes(); ++m) {
-               if (!world.mote(m).joined()) continue;
-               world.mote(m).send(world.sink(0).address(), kMockupMessage, {0xA0, i}, true);
-             }
-           }
-         }});
+    plan.at(time, [](World& world) {
+      for (std::uint8_t i = 0; i < 5; ++i) {
+        for (std::size_t m = 0; m < world.motes(); ++m) {
+          if (!world.mote(m).joined()) continue;
+          world.mote(m).send(world.sink(0).address(), kMockupMessage, {0xA0, i}, true);
+        }
+      }
+    });
   }
 }
 void out_full(Plan& plan, Random&) {
   plan.traits.out_buffer = 4;
   for (const std::int64_t time : {3'000'000, 5'000'000}) {
-    plan.script.push_back(
-        {time, [](World& world) {
-           if (!world.mote(0).joined()) return;
-           for (std::uint8_t i = 0; i < 9; ++i) {
-             world.mote(0).send(world.base(0).address(), kMockupMessage, {0xA1, i}, i % 2 == 0);
-           }
-         }});
+    plan.at(time, [](World& world) {
+      if (!world.mote(0).joined()) return;
+      for (std::uint8_t i = 0; i < 9; ++i) {
+        world.mote(0).send(world.base(0).address(), kMockupMessage, {0xA1, i}, i % 2 == 0);
+      }
+    });
   }
 }
 

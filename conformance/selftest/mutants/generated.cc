@@ -53,8 +53,7 @@ Ways ways_to_accept(const Golden& golden) {
       std::set<std::size_t>& found = ways[{before.config.role, action.requirement}];
       for (std::size_t i = 0; i < mends().size(); ++i) {
         if (found.contains(i)) continue;
-        Body body;
-        body.state = before;
+        Body body{.state = before};
         Actions mended;
         Moment moment(body, now, event, mended);
         if (mends()[i].step(moment) && !ignores_anything(mended)) found.insert(i);

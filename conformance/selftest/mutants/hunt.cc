@@ -116,8 +116,7 @@ CaseResult run(const CaseRef& ref, const runner::SubjectFactory& make,
   trace::Parsed file;
   file.file.head = ref.file->file.head;
   trace::Case one = *ref.one;
-  CaseResult result;
-  result.reason = trace::state(file.file, one, stated).text;
+  CaseResult result{.reason = trace::state(file.file, one, stated).text};
   if (result.reason.empty()) return run({&file, &one}, make);
   result.verdict = CaseVerdict::kSkip;
   return result;

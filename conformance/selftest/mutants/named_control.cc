@@ -35,9 +35,7 @@ void add_switches(Mutants& out) {
       }));
   add(out, "interface_off_sends_synaptic", "Timers send on a radio that is off.",
       {"N10-OFF"_rule, "N2-QUEUE"_rule}, always([](Moment& moment) {
-        if (std::holds_alternative<machine::TimerDue>(moment.event)) {
-          return as_if_on(moment);
-        }
+        if (std::holds_alternative<machine::TimerDue>(moment.event)) return as_if_on(moment);
         moment.honest();
       }));
   add(out, "off_for_good", "An interface that was off never comes on again.", {"N10-ON"_rule},

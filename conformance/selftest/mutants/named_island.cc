@@ -177,9 +177,7 @@ void add_base_station(Mutants& out) {
   add(out, "peis_to_the_wrong_island",
       "A base station sends everything to an island that was not meant.", {"N8-PEIS"_rule},
       edit_sent([](Moment& moment, Transmit& frame) {
-        if (frame.link == Link::kPeis) {
-          frame.dest = static_cast<std::uint16_t>(own(moment).pid + 2);
-        }
+        if (frame.link == Link::kPeis) frame.dest = static_cast<std::uint16_t>(own(moment).pid + 2);
       }));
   add(out, "incoming_reliable_0_and_seq_5",
       "A base station hands down with reliable 0 and number 5 (release 1.0).", {"N8-INCOMING"_rule},
@@ -225,9 +223,7 @@ void add_island_id(Mutants& out) {
         const bool joining =
             moment.heard(am::kJoin) != nullptr || moment.heard(am::kConfig) != nullptr;
         const std::uint16_t island = moment.state.island;
-        if (!joining && moment.is(Role::kSink)) {
-          moment.state.island = moment.state.config.island;
-        }
+        if (!joining && moment.is(Role::kSink)) moment.state.island = moment.state.config.island;
         moment.honest();
         if (!joining && moment.is(Role::kSink)) moment.state.island = island;
       }));
@@ -258,9 +254,7 @@ void add_island_id(Mutants& out) {
       {"N9-MEMBERS"_rule}, always([](Moment& moment) {
         const machine::JoinSink before = moment.state.sink;
         moment.honest();
-        if (moment.heard(am::kConfig) != nullptr) {
-          moment.state.sink.members = before.members;
-        }
+        if (moment.heard(am::kConfig) != nullptr) moment.state.sink.members = before.members;
       }));
 }
 

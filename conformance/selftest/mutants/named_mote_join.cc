@@ -104,9 +104,7 @@ void add_join_ends(Mutants& out) {
   add(out, "member_keeps_asking", "The join timer of a member runs on and asks again.",
       {"J5-STOP"_rule}, after_step([](Moment& moment) {
         if (moment.heard(am::kNet) != nullptr && is_member(moment)) send_request(moment);
-        if (moment.called<JoinIsland>() != nullptr && is_member(moment)) {
-          send_request(moment);
-        }
+        if (moment.called<JoinIsland>() != nullptr && is_member(moment)) send_request(moment);
       }));
   add(out, "waiting_request_leaves", "A request that waits when a reply comes leaves all the same.",
       {"J5-STOP"_rule}, always([](Moment& moment) {
@@ -133,9 +131,7 @@ void add_join_ends(Mutants& out) {
       }));
   add(out, "member_join_is_success", "joinIsland of a member ends in joined(SUCCESS).",
       {"J8-JOINED"_rule}, edit_told<Joined>([](Moment& moment, Joined& joined) {
-        if (moment.called<JoinIsland>() != nullptr && is_member(moment)) {
-          joined.success = true;
-        }
+        if (moment.called<JoinIsland>() != nullptr && is_member(moment)) joined.success = true;
       }));
 }
 
@@ -283,9 +279,7 @@ void add_acceptance(Mutants& out) {
       always([](Moment& moment) {
         const std::uint32_t offset = moment.state.clock_offset_ms;
         moment.honest();
-        if (moment.heard(am::kJoinReply) != nullptr) {
-          moment.state.clock_offset_ms = offset;
-        }
+        if (moment.heard(am::kJoinReply) != nullptr) moment.state.clock_offset_ms = offset;
       }));
   add(out, "clock_in_32_bits", "A mote's clock counts microseconds in 32 bits.", {"J4-CLOCK"_rule},
       edit_told<machine::Clock>([](Moment& moment, machine::Clock& clock) {

@@ -53,9 +53,7 @@ void add_sending(Mutants& out) {
       sent_field(is_send, net::kSrcPid, 0));
   add(out, "base_station_is_device_0", "A base station signs with devid 0.", {"N1-SRC"_rule},
       edit_sent([](Moment& moment, Transmit& frame) {
-        if (is_send(moment, frame) && moment.is(Role::kBaseStation)) {
-          put(frame, net::kSrcDevid, 0);
-        }
+        if (is_send(moment, frame) && moment.is(Role::kBaseStation)) put(frame, net::kSrcDevid, 0);
       }));
   add(out, "send_returns_another_number", "send returns the number of the next message.",
       {"N1-SEQ"_rule}, edit_told<SendResult>([](Moment&, SendResult& result) {
@@ -221,9 +219,7 @@ void add_addressing(Mutants& out) {
       }));
   add(out, "devid_is_am_address", "A mote sends to the devid, whatever the island.",
       {"N4-SINK"_rule}, edit_sent([](Moment& moment, Transmit& frame) {
-        if (moment.is(Role::kMote) && is_net(frame)) {
-          frame.dest = get(frame, net::kDestDevid);
-        }
+        if (moment.is(Role::kMote) && is_net(frame)) frame.dest = get(frame, net::kDestDevid);
       }));
 }
 

@@ -162,16 +162,12 @@ void add_ticks(Mutants& out) {
           channels[i].started = false;
         }
         moment.honest();
-        for (std::size_t i = 1; i < channels.size(); ++i) {
-          channels[i].started = started[i];
-        }
+        for (std::size_t i = 1; i < channels.size(); ++i) channels[i].started = started[i];
       }));
   add(out, "reliable_sends_changes_only", "A reliable channel sends only what changed.",
       {"S1-MODE"_rule, "S2-SEND"_rule, "S2-CONTENT"_rule, "S1-LIMIT"_rule},
       before_step([](Moment& moment) {
-        for (Channel& channel : moment.state.synaptic.out) {
-          channel.mode = machine::Mode::kPowerSave;
-        }
+        for (Channel& channel : moment.state.synaptic.out) channel.mode = machine::Mode::kPowerSave;
       }));
   add(out, "floats_in_network_order", "Synaptic data are big-endian.",
       {"S2-CONTENT"_rule, "S1-WRITE"_rule, "S1-ENLARGE"_rule},

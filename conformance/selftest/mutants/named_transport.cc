@@ -33,9 +33,7 @@ void add_message_acks(Mutants& out) {
       {"T2-PROMPT"_rule, "T2-ACK"_rule}, after_step([](Moment& moment) {
         moment.rewrite([&](const Action& action) {
           const bool sent = action.what == Action::What::kTransmit;
-          if (!sent || !is_ack_sent(moment, moment.sent(action))) {
-            return moment.keep(action);
-          }
+          if (!sent || !is_ack_sent(moment, moment.sent(action))) return moment.keep(action);
           moment.hold(action, 1200);
         });
       }));
@@ -256,9 +254,7 @@ void add_delivery(Mutants& out) {
       }));
   add(out, "delivered_without_last_byte", "The last byte of a delivered message is lost.",
       {"T1-DELIVER"_rule, "N5-DELIVER"_rule}, edit_told<Received>([](Moment&, Received& received) {
-        if (!received.data.empty()) {
-          received.data = received.data.first(received.data.size() - 1);
-        }
+        if (!received.data.empty()) received.data = received.data.first(received.data.size() - 1);
       }));
   add(out, "delivered_to_one_application", "Everything is delivered to MOCKUP.",
       {"T1-DELIVER"_rule},

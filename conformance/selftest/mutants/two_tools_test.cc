@@ -135,8 +135,7 @@ struct Judgement {
 Judgement judged_anew(const suite::CaseRun& run, const Recording& recording) {
   check::RunReader reader;
   std::string error;
-  Judgement out;
-  out.read = reader.add_bytes(run.name, recording.bytes, error);
+  Judgement out{.read = reader.add_bytes(run.name, recording.bytes, error)};
   if (!out.read) {
     out.blame = "it cannot be read";
     return out;

@@ -252,9 +252,7 @@ Script before(Script script, Ticks end) {
 // Returns where a frame that the node hears has the number that it answers; null if nowhere.
 std::uint8_t* answered_number(const Frame& frame, std::vector<std::uint8_t>& bytes) {
   using Reply = rubicon::JoinReplyLayout::SeqNumAt;
-  if (frame.type == am::kJoinReply && bytes.size() >= Reply::kEnd) {
-    return bytes.data() + Reply::kAt;
-  }
+  if (frame.type == am::kJoinReply && bytes.size() >= Reply::kEnd) return bytes.data() + Reply::kAt;
   const auto message = rubicon::NetMsgView::parse(Bytes(bytes.data(), bytes.size()));
   if (frame.type != am::kNet || !message) return nullptr;
   const Bytes payload = message->payload();

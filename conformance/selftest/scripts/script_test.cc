@@ -26,9 +26,7 @@ Bytes view(const std::vector<std::uint8_t>& bytes) { return Bytes(bytes.data(), 
 
 std::vector<std::string> lines_of(const std::vector<runner::Output>& outputs) {
   std::vector<std::string> out;
-  for (const runner::Output& output : outputs) {
-    out.push_back(trace::print(line_of(output, "node")));
-  }
+  for (const runner::Output& output : outputs) out.push_back(trace::print(line_of(output, "node")));
   return out;
 }
 

@@ -76,8 +76,7 @@ void with_mutant(const Wanted& wanted, int mutant, Use use) {
     });
   }
   setenv("RUBRIC_SOURCE_MUTANT", std::to_string(mutant).c_str(), 1);
-  targets::Options options;
-  options.step_timeout = kStepTimeout;
+  targets::Options options{.step_timeout = kStepTimeout};
   const auto attachment = targets::attach(wanted.target, options);
   use([&](const trace::NodeHeader&) { return attachment->target(); });
 }

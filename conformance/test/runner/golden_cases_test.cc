@@ -114,9 +114,7 @@ TEST(GoldenCases, AnIndexFindsAllThatALineMatchesAndLittleElse) {
           if (!trace::compare(at, messages[i], before)) continue;
           ++matched;
           EXPECT_TRUE(found.contains(i)) << one.name << ": " << trace::print(*line);
-          if (bindings.all().size() == before.all().size()) {
-            trace::match(at, messages[i], bindings);
-          }
+          if (bindings.all().size() == before.all().size()) trace::match(at, messages[i], bindings);
         }
       }
       for (std::uint32_t i = 0; i < messages.size(); ++i) index.remove(i, messages[i], "rA", false);

@@ -55,9 +55,7 @@ std::string order_of(std::string_view link, const trace::Message& message) {
     return value != nullptr && value->text == text;
   };
   if (message.name == "ack_received" && is("result", "fail")) return trace::print(message);
-  if (message.name != "syn_data" || is("status", "unknown_channel")) {
-    return std::string(link);
-  }
+  if (message.name != "syn_data" || is("status", "unknown_channel")) return std::string(link);
   trace::Message of_channel = message;
   std::erase_if(of_channel.fields, [](const auto& field) { return field.path == "status"; });
   return trace::print(of_channel);

@@ -286,9 +286,7 @@ class Run {
       unseen_.merge(unseen);
       // A visible output may break a rule about every link; a part of the links cannot show that it
       // was kept.
-      if (line.op == Op::kMustNot && is_seen_in_part(*node, line)) {
-        forbidden_.push_back(timed);
-      }
+      if (line.op == Op::kMustNot && is_seen_in_part(*node, line)) forbidden_.push_back(timed);
       return can_skip(line);
     }
     if (line.op == Op::kGiven && names_lost(line)) return false;

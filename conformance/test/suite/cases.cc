@@ -129,9 +129,7 @@ void Cases::add(trace::Parsed file) {
       throw std::runtime_error(fmt::format("{}: the name is also in {}, line {}", place,
                                            other->file->file_name, other->one->place.line));
     }
-    if (added.roles().empty()) {
-      throw std::runtime_error(place + " has no node under test (iut)");
-    }
+    if (added.roles().empty()) throw std::runtime_error(place + " has no node under test (iut)");
     places_[one.name] = cases_.size();
     cases_.push_back(added);
   }

@@ -10,7 +10,6 @@
 #include <iterator>
 #include <mutex>
 #include <new>
-#include <string_view>
 #include <thread>
 #include <utility>
 
@@ -161,8 +160,7 @@ CaseRun run_one(const SuiteCase& one, targets::Attachment& attachment, const std
 ImplementationRun run(const std::string& target, const MakeAttachment& make, const Plan& plan,
                       const Watcher& watcher) {
   const auto start = Clock::now();
-  ImplementationRun out;
-  out.target = target;
+  ImplementationRun out{.target = target};
   const std::unique_ptr<targets::Attachment> first = make();
   out.dishonest = dishonesty(*first);
   const std::string said = first->take_stderr();

@@ -293,9 +293,7 @@ const Identity& LineAttachment::identity() {
 }
 
 std::unique_ptr<runner::Target> LineAttachment::target() {
-  if (!in_use_.expired()) {
-    throw Unsupported("one real node is attached, and the case has several");
-  }
+  if (!in_use_.expired()) throw Unsupported("one real node is attached, and the case has several");
   identity();
   if (line_.node.restarts && used_) line_.line->close();
   std::unique_ptr<AppChannel> app;

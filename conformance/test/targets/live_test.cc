@@ -88,9 +88,7 @@ void try_all(std::vector<Attempt> attempts) {
   case_files();
   tolerance_of_this_host();
   std::vector<std::thread> threads;
-  for (Attempt& one : attempts) {
-    threads.emplace_back([&one] { one.results = one.run(one.cases); });
-  }
+  for (Attempt& one : attempts) threads.emplace_back([&one] { one.results = one.run(one.cases); });
   for (std::thread& one : threads) one.join();
   for (const Attempt& attempt : attempts) {
     if (attempt.results.empty()) std::printf("%s: not decided\n", attempt.what.c_str());

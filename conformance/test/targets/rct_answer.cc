@@ -239,9 +239,7 @@ Identity read_hello(const std::string& line) {
     throw broken(fmt::format("it speaks version {} of the protocol, the runner no other than {}",
                              *number, kRctVersion));
   }
-  Identity out;
-  out.name = words.next();
-  out.version = words.next();
+  Identity out{.name = std::string(words.next()), .version = std::string(words.next())};
   if (out.name.empty() || out.version.empty()) throw broken("it lacks its name or version");
   std::set<std::string_view> keys;
   const std::string known = "roles, time, links, " + trace::parameter_names();

@@ -49,8 +49,7 @@ struct Told {
 };
 
 void read_frame(Words words, Told& out) {
-  machine::Frame frame;
-  frame.link = line_of(words.next());
+  machine::Frame frame{.link = line_of(words.next())};
   const std::string_view hex = words.next();
   if (std::string wrong = frame_of(hex, frame, out.bytes); !wrong.empty()) {
     std::string packet;

@@ -132,17 +132,13 @@ class Structure {
       if (structure) builder.claim(field->id, place);
       if (field->extent == ExtentKind::kOwn) continue;
       builder.claim(field->id + "_room", place);
-      if (field->extent == ExtentKind::kToEnd) {
-        builder.claim("set_" + field->id + "_size", place);
-      }
+      if (field->extent == ExtentKind::kToEnd) builder.claim("set_" + field->id + "_size", place);
     }
     for (const cpp::Group& group : layout.groups) {
       const SourcePlace& place = group.fields.front()->place;
       view.claim(group.name + "_kind", place);
       view.claim(pascal(group.name) + "Kind", place);
-      for (const Type* one : group.types) {
-        view.claim(group.name + "_as_" + one->id, place);
-      }
+      for (const Type* one : group.types) view.claim(group.name + "_as_" + one->id, place);
     }
   }
 

@@ -203,9 +203,7 @@ void check_instances(Check& check, Type& type) {
     }
   }
   for (const auto& instance : type.instances) {
-    if (instance->position >= 0 && !instance->is_peek) {
-      check_interpretation(check, type, *instance);
-    }
+    if (instance->position >= 0 && !instance->is_peek) check_interpretation(check, type, *instance);
   }
 }
 

@@ -73,8 +73,7 @@ Requirement read_requirement(const YamlInput& input, const YAML::Node& node, Cat
   const std::span<const std::string_view> keys(kRequirementKeys);
   const YamlMap map(input, node, "a requirement",
                     of == Catalogue::kRubicon ? keys : keys.first(kOfAnyOther));
-  Requirement out;
-  out.place = input.place(node);
+  Requirement out{.place = input.place(node)};
   if (!node.IsMap()) return out;
   for (const std::string_view key : std::span(kRequirementKeys).first(kNeeded)) {
     if (map.has(key)) continue;

@@ -36,9 +36,7 @@ bool set_number(const YamlInput& input, const YAML::Node& node, std::string_view
   if (base[0] == 'f') field.kind = ValueKind::kFloat;
   field.width_bytes = base[1] - '0';
   if (field.width_bytes == 1) {
-    if (!suffix.empty()) {
-      input.error(node, "a byte order for one byte", "u1 or s1 was expected");
-    }
+    if (!suffix.empty()) input.error(node, "a byte order for one byte", "u1 or s1 was expected");
     return true;
   }
   field.little_endian = suffix.empty() ? spec.little_endian : suffix == "le";
@@ -225,9 +223,7 @@ void read_valid(const YamlInput& input, const YamlMap& map, Field& field) {
   if (entry == nullptr) return;
   Valid valid{.place = input.place(entry->value)};
   const auto add = [&](const YAML::Node& node) {
-    if (auto expr = read_expr(input, node, "valid")) {
-      valid.one_of_exprs.push_back(std::move(expr));
-    }
+    if (auto expr = read_expr(input, node, "valid")) valid.one_of_exprs.push_back(std::move(expr));
   };
   if (entry->value.IsMap()) {
     const YamlMap bounds(input, entry->value, "valid", kValidKeys);

@@ -198,8 +198,7 @@ void read_type(const YamlInput& input, const YamlMap& map, const Spec& spec, Typ
 }
 
 void read_enum_value(const YamlInput& input, const YamlEntry& entry, Enum& out) {
-  EnumEntry value;
-  value.place = input.place(entry.key_node);
+  EnumEntry value{.place = input.place(entry.key_node)};
   const auto number = parse_integer(entry.key);
   if (!number || *number < 0 || *number > kEnumValueMax) {
     input.error(entry.key_node, fmt::format("enum value {}", quote(entry.key)),

@@ -1,21 +1,16 @@
-// Every file in bad/ holds a mistake and states in its first lines the expected report:
-//   # expect: line:column: text        (or another file before it)
-//   #   continued
-// In traces `;` begins such a line.
+// Every file in bad/ holds mistakes and states the expected reports; bad_files.h says how.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <string>
 #include <vector>
 
 #include "spec/compiler/load/load.h"
+#include "spec/compiler/tests/bad_files.h"
 #include "spec/compiler/wire_specs.h"
 
 namespace rubricc {
 namespace {
-
-const std::string kFolder = "spec/compiler/tests/bad/";
 
 std::vector<std::string> names_in(const std::string& folder, const std::string& extension) {
   std::vector<std::string> out;
@@ -23,26 +18,11 @@ std::vector<std::string> names_in(const std::string& folder, const std::string& 
   return out;
 }
 
-std::vector<std::string> expected_in(const std::string& file) {
-  std::vector<std::string> out;
-  std::ifstream in(file);
-  for (std::string line; std::getline(in, line) && line.find_first_of("#;") == 0;) {
-    if (line.substr(1).starts_with(" expect: ")) {
-      out.push_back(line.substr(10));
-    } else if (!out.empty()) {
-      out.back() += " " + line.substr(line.find_first_not_of("#; "));
-    }
-  }
-  return out;
-}
-
 std::vector<std::string> shown(const Diagnostics& diagnostics, const std::string& file) {
   std::vector<std::string> out;
   for (const Diagnostic& one : diagnostics.sorted()) {
     std::string where = fmt::format("{}:{}: ", one.place.line, one.place.column);
-    if (one.place.file != file) {
-      where = one.place.file.substr(kFolder.size()) + ":" + where;
-    }
+    if (one.place.file != file) where = one.place.file.substr(kBadFolder.size()) + ":" + where;
     out.push_back(where + one.text);
   }
   return out;
@@ -57,15 +37,14 @@ Model catalogue() {
     EXPECT_EQ(diagnostics.print(), "");
     return model.requirements;
   }();
-  Model model;
-  model.requirements = rules;
+  Model model{.requirements = rules};
   return model;
 }
 
 class BadSpec : public testing::TestWithParam<std::string> {};
 
 TEST_P(BadSpec, IsRefusedWithTheDiagnosticsThatItExpects) {
-  const std::string file = kFolder + GetParam() + ".ksy";
+  const std::string file = kBadFolder + GetParam() + ".ksy";
   Model model = catalogue();
   Diagnostics diagnostics;
   load_specs({file}, model, diagnostics);
@@ -74,13 +53,13 @@ TEST_P(BadSpec, IsRefusedWithTheDiagnosticsThatItExpects) {
   EXPECT_FALSE(diagnostics.empty());
 }
 
-INSTANTIATE_TEST_SUITE_P(Files, BadSpec, testing::ValuesIn(names_in(kFolder, ".ksy")),
+INSTANTIATE_TEST_SUITE_P(Files, BadSpec, testing::ValuesIn(names_in(kBadFolder, ".ksy")),
                          [](const auto& one) { return one.param; });
 
 class BadRequirements : public testing::TestWithParam<std::string> {};
 
 TEST_P(BadRequirements, AreRefusedWithTheDiagnosticsThatTheyExpect) {
-  const std::string file = kFolder + "requirements/" + GetParam() + ".yaml";
+  const std::string file = kBadFolder + "requirements/" + GetParam() + ".yaml";
   Model model;
   Diagnostics diagnostics;
   load_requirements(file, model, diagnostics);
@@ -89,13 +68,13 @@ TEST_P(BadRequirements, AreRefusedWithTheDiagnosticsThatTheyExpect) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Files, BadRequirements,
-                         testing::ValuesIn(names_in(kFolder + "requirements/", ".yaml")),
+                         testing::ValuesIn(names_in(kBadFolder + "requirements/", ".yaml")),
                          [](const auto& one) { return one.param; });
 
 class BadProfile : public testing::TestWithParam<std::string> {};
 
 TEST_P(BadProfile, IsRefusedWithTheDiagnosticsThatItExpects) {
-  const std::string file = kFolder + "profiles/" + GetParam() + ".yaml";
+  const std::string file = kBadFolder + "profiles/" + GetParam() + ".yaml";
   Model model = catalogue();
   Diagnostics diagnostics;
   load_profile(file, model, diagnostics);
@@ -104,13 +83,13 @@ TEST_P(BadProfile, IsRefusedWithTheDiagnosticsThatItExpects) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Files, BadProfile,
-                         testing::ValuesIn(names_in(kFolder + "profiles/", ".yaml")),
+                         testing::ValuesIn(names_in(kBadFolder + "profiles/", ".yaml")),
                          [](const auto& one) { return one.param; });
 
 class BadCases : public testing::TestWithParam<std::string> {};
 
 TEST_P(BadCases, AreRefusedWithTheDiagnosticsThatTheyExpect) {
-  const std::string file = kFolder + "cases/" + GetParam() + ".rtr";
+  const std::string file = kBadFolder + "cases/" + GetParam() + ".rtr";
   Model model = catalogue();
   Diagnostics diagnostics;
   load_cases({file}, model, diagnostics);
@@ -118,15 +97,16 @@ TEST_P(BadCases, AreRefusedWithTheDiagnosticsThatTheyExpect) {
   EXPECT_FALSE(diagnostics.empty());
 }
 
-INSTANTIATE_TEST_SUITE_P(Files, BadCases, testing::ValuesIn(names_in(kFolder + "cases/", ".rtr")),
+INSTANTIATE_TEST_SUITE_P(Files, BadCases,
+                         testing::ValuesIn(names_in(kBadFolder + "cases/", ".rtr")),
                          [](const auto& one) { return one.param; });
 
-// A file that lost its first lines would expect nothing and a renamed folder would test nothing.
+// A renamed folder would test nothing; coverage_test.cc counts the mistakes.
 TEST(BadSpecs, AreAllThere) {
-  EXPECT_GE(files_in(kFolder, ".ksy").size(), 155U);
-  EXPECT_GE(files_in(kFolder + "requirements/", ".yaml").size(), 16U);
-  EXPECT_GE(files_in(kFolder + "profiles/", ".yaml").size(), 11U);
-  EXPECT_GE(files_in(kFolder + "cases/", ".rtr").size(), 6U);
+  EXPECT_GE(files_in(kBadFolder, ".ksy").size(), 47U);
+  EXPECT_GE(files_in(kBadFolder + "requirements/", ".yaml").size(), 2U);
+  EXPECT_GE(files_in(kBadFolder + "profiles/", ".yaml").size(), 3U);
+  EXPECT_GE(files_in(kBadFolder + "cases/", ".rtr").size(), 6U);
 }
 
 // Reports errors for a text that would be too large for a file beside the others.
@@ -161,6 +141,35 @@ TEST(BadSpecs, TypesNestNotTooDeep) {
   }
   EXPECT_NE(reported_for(text).find("error: types nest too deep; at most 100 levels\n"),
             std::string::npos);
+}
+
+TEST(BadSpecs, NestAtMost4096Numbers) {
+  std::string text =
+      "meta: {id: big, endian: be}\ntypes:\n  t13: {-requirement: A, seq: [{id: a, type: u1}]}\n";
+  for (int i = 0; i < 13; ++i) {
+    text += fmt::format(
+        "  t{0}: {{-requirement: A, seq: [{{id: a, type: t{1}}}, {{id: b, type: t{1}}}]}}\n", i,
+        i + 1);
+  }
+  EXPECT_NE(reported_for(text).find("'t0' nests too many numbers; at most 4096 are laid out\n"),
+            std::string::npos);
+}
+
+TEST(BadSpecs, AliasesExpandToAtMost50000Values) {
+  std::string cases, text;
+  for (int i = 0; i < 60; ++i) cases += fmt::format("{}: t1, ", i);
+  text =
+      "meta: {id: big, endian: be}\ntypes:\n  t0: &t\n    -requirement: A\n    seq:\n"
+      "      - {id: f0, size-eos: true, type: {switch-on: 1, cases: &c {" +
+      cases + "}}}\n";
+  for (int i = 1; i < 60; ++i) {
+    text +=
+        fmt::format("      - {{id: f{}, size-eos: true, type: {{switch-on: 1, cases: *c}}}}\n", i);
+  }
+  for (int i = 1; i < 60; ++i) text += fmt::format("  t{}: *t\n", i);
+  const std::string error =
+      "error: too much to read once aliases are expanded; at most 50000 values are read\n";
+  EXPECT_NE(reported_for(text).find(error), std::string::npos);
 }
 
 TEST(BadSpecs, OnlyTheFirst500DiagnosticsAreShown) {

@@ -88,9 +88,7 @@ class Dump {
   void mask(const reflect::MaskTable* table) {
     if (!table) return;
     put("mask", table->name);
-    for (int i = 0; i < table->width_bits; ++i) {
-      put(table->bit_names[i] ? table->bit_names[i] : "");
-    }
+    for (int i = 0; i < table->width_bits; ++i) put(table->bit_names[i] ? table->bit_names[i] : "");
   }
 
   void route(const reflect::Route& route) {

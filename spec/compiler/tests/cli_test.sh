@@ -51,7 +51,7 @@ for file in profiles cases; do
   [ -f "$out/good/conformance/generated/$file.h" ] || { echo "no $file"; failures=1; }
 done
 expect 1 --check --profiles spec/compiler/tests/bad/profiles $good
-grep -q 'profiles/not_a_switch.yaml:18:24: error: ' "$out/stderr" ||
+grep -q 'profiles/mistakes.yaml:26:24: error: ' "$out/stderr" ||
   { echo "profiles are not checked"; failures=1; }
 expect 1 --check --cases spec/compiler/tests/bad/cases $good
 grep -q 'cases/no_name.rtr:4:1: error: ' "$out/stderr" ||

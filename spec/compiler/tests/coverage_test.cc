@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "spec/compiler/tests/bad_files.h"
+
 namespace rubricc {
 namespace {
 
@@ -18,20 +20,15 @@ std::string read(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
 }
 
-/// Returns the comments at the top of every bad input, lines joined, and the test that makes its
-/// own.
+/// Returns the reports that the bad inputs expect, and the test that makes its own.
 std::string expectations() {
-  std::string out = read(kCompiler + "tests/bad_test.cc");
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(kCompiler + "tests/bad")) {
+  std::string out;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(kBadFolder)) {
     if (!entry.is_regular_file()) continue;
-    std::ifstream in(entry.path());
-    for (std::string line; std::getline(in, line) && line.find_first_of("#;") == 0;) {
-      const bool first = line.substr(1).starts_with(" expect: ");
-      out +=
-          (first ? "\n" : " ") + line.substr(std::min(line.find_first_not_of("#; "), line.size()));
-    }
+    for (const std::string& expected : expected_in(entry.path())) out += "\n" + expected;
   }
-  return out;
+  EXPECT_GE(std::ranges::count(out, '\n'), 270);  // Else the scan is broken.
+  return out + read(kCompiler + "tests/bad_test.cc");
 }
 
 /// Returns the string that begins with the quote at `at`, and the index after it.

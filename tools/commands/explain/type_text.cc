@@ -136,9 +136,7 @@ void each_field(const Protocol& protocol, Visit visit) {
   for (int i = 0; i < protocol.type_count; ++i) {
     const Type& type = *protocol.types[i];
     for (int k = 0; k < type.field_count; ++k) visit(type, type.fields[k]);
-    for (int k = 0; k < type.interpretation_count; ++k) {
-      visit(type, type.interpretations[k].field);
-    }
+    for (int k = 0; k < type.interpretation_count; ++k) visit(type, type.interpretations[k].field);
   }
 }
 
@@ -489,9 +487,7 @@ bool leads_to(const Field& f, const Type& message, Reach& reach) {
   reach.otherwise = f.choice->otherwise == &message;
   if (reach.values.empty() && !reach.otherwise) return false;
   reach.key = expr_text(f.choice->key, *reach.parent);
-  if (is_number(f.choice->key)) {
-    path_of(f.choice->key.steps[0], *reach.parent, &reach.key_field);
-  }
+  if (is_number(f.choice->key)) path_of(f.choice->key.steps[0], *reach.parent, &reach.key_field);
   return true;
 }
 

@@ -175,9 +175,7 @@ EcologyIsland island_of(const YAML::Node& node, std::size_t index) {
                                           : fmt::format("zep:{}", kFirstPort + index);
   if (values.contains("serial")) island.serial = serial_of(values["serial"]);
   if (values.contains("app")) island.app = station_app_of(values["app"], "app");
-  if (values.contains("sink_app")) {
-    island.sink_app = station_app_of(values["sink_app"], "sink_app");
-  }
+  if (values.contains("sink_app")) island.sink_app = station_app_of(values["sink_app"], "sink_app");
   if (!island.serial.empty() && !island.app.empty()) {
     throw Mistake{line_of(values["app"]),
                   "app is the base station's, which is the program at 'serial'"};

@@ -38,8 +38,7 @@ void Keeper::open_log(const std::string& path, Mode mode,
 void Keeper::frame(const Packet& packet, std::string_view interface_name) {
   const std::lock_guard lock(mutex_);
   if (!capture_) return;
-  Kept kept;
-  kept.packet = packet;
+  Kept kept{.packet = packet};
   kept.bytes.assign(packet.bytes.begin(), packet.bytes.end());
   kept.interface_name = interface_name;
   const auto place = std::upper_bound(

@@ -9,8 +9,7 @@ namespace rubric::run {
 
 /// Returns what borrows the packet's bytes.
 inline machine::Frame frame_of(node::Line line, Bytes packet) {
-  machine::Frame frame;
-  frame.link = static_cast<machine::Link>(line);
+  machine::Frame frame{.link = static_cast<machine::Link>(line)};
   const auto header = tinyos::AmHeaderView::parse(packet);
   if (!header) {
     frame.packet = packet;

@@ -49,8 +49,7 @@ std::string name_of(node::Role role, std::uint16_t island, std::uint16_t id) {
 }
 
 trace::NodeHeader header_of(const StationSetup& setup) {
-  trace::NodeHeader header;
-  header.name = setup.name;
+  trace::NodeHeader header{.name = setup.name};
   const bool mote = setup.role == node::Role::kMote;
   const bool base = setup.role == node::Role::kBaseStation;
   header.role = mote ? trace::Role::kMote : base ? trace::Role::kBaseStation : trace::Role::kSink;
@@ -105,9 +104,7 @@ void Station::open_radio() {
   user.heard = [this](Bytes packet) { heard(Line::kRadio, packet); };
   user.sent = [this](bool acked) {
     catch_up();
-    if (awaits_link_ack_) {
-      keeper_.given(names_, machine::SendDone{machine::Link::kRadio, acked});
-    }
+    if (awaits_link_ack_) keeper_.given(names_, machine::SendDone{machine::Link::kRadio, acked});
     awaits_link_ack_ = false;
     layer_->sent(Line::kRadio, acked);
   };

@@ -75,11 +75,7 @@ void VirtualRadio::put(Bytes frame, std::int64_t time_ns) {
   zep.frame = Bytes(whole.data(), whole.size());
   std::string datagram;
   append_zep(zep, datagram);
-  Packet packet;
-  packet.framing = Framing::kRadio;
-  packet.bytes = frame;
-  packet.fcs = sum;
-  packet.time_ns = time_ns;
+  Packet packet{.framing = Framing::kRadio, .bytes = frame, .time_ns = time_ns, .fcs = sum};
   user_.on_air(packet);
   air_.send(Bytes(reinterpret_cast<const std::uint8_t*>(datagram.data()), datagram.size()));
 }

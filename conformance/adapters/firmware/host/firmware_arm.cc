@@ -145,9 +145,7 @@ int serve_serial_device(QemuBoard& board, std::uint16_t island, bool over_tcp) {
   Bridge bridge(board);
   const Firmware firmware = bridge.greet();
   if (!firmware.is_sink) throw BoardBroken("this is not firmware of a sink");
-  NodeSetup setup;
-  setup.id = 1;
-  setup.island = island;
+  NodeSetup setup{.id = 1, .island = island};
   bridge.start(setup);
   std::unique_ptr<Device> device;
   if (over_tcp) {

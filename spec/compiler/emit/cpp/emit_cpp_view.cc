@@ -170,9 +170,7 @@ std::string getter(const Layout& layout, std::size_t i, const Spec& spec) {
                                     {"value", value}});
   const std::string head = (constant ? "constexpr " : "") + type + " " + f.id + "() const {";
   const std::string line = head + " return " + value + "; }";
-  if (!f.condition && line.size() <= 98) {
-    text = text.substr(0, text.find(head)) + line;
-  }
+  if (!f.condition && line.size() <= 98) text = text.substr(0, text.find(head)) + line;
   return out + text + "\n";
 }
 

@@ -1,7 +1,6 @@
 // Emits the Java messages: the files, and the head of each.
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <array>
 
 #include "spec/compiler/emit/cpp/emit_cpp_text.h"

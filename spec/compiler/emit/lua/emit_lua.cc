@@ -280,9 +280,7 @@ std::string mask_table(const Type& type) {
 std::string spec_tables(const Spec& spec) {
   std::string out;
   for (const auto& one : spec.enums) out += enum_table(*one);
-  for (const auto& type : spec.types) {
-    out += type->is_mask ? mask_table(*type) : type_table(*type);
-  }
+  for (const auto& type : spec.types) out += type->is_mask ? mask_table(*type) : type_table(*type);
   return out;
 }
 

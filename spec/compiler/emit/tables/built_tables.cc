@@ -170,9 +170,7 @@ class BuiltTables::Builder {
   reflect::Valid valid(const Field& field) {
     if (!field.valid) return {reflect::ValidKind::kAny, 0, 0, nullptr, 0};
     const Valid& rule = *field.valid;
-    if (rule.one_of.empty()) {
-      return {reflect::ValidKind::kRange, *rule.min, *rule.max, nullptr, 0};
-    }
+    if (rule.one_of.empty()) return {reflect::ValidKind::kRange, *rule.min, *rule.max, nullptr, 0};
     return {reflect::ValidKind::kOneOf, 0, 0, list(rule.one_of), few(rule.one_of)};
   }
 

@@ -49,9 +49,7 @@ void add_field(Dictionary& out, const Type& type, const Field& field) {
     out.number(name + suffix, value, field.width_bytes, field.little_endian);
   };
   if (field.enumeration != nullptr) {
-    for (const EnumEntry& entry : field.enumeration->entries) {
-      add("_" + entry.name, entry.value);
-    }
+    for (const EnumEntry& entry : field.enumeration->entries) add("_" + entry.name, entry.value);
   }
   if (field.expect) add("_expected", *field.expect);
   if (!field.valid) return;
@@ -78,9 +76,7 @@ GeneratedFiles emit_dictionary(const Spec& spec) {
   Dictionary out;
   out.comment("AM types");
   for (const auto& type : spec.types) {
-    for (const std::int64_t value : type->am_types) {
-      out.number("am_" + type->id, value, 1, false);
-    }
+    for (const std::int64_t value : type->am_types) out.number("am_" + type->id, value, 1, false);
   }
   for (const auto& type : spec.types) {
     if (type->is_mask) continue;

@@ -121,9 +121,7 @@ class TypeTables {
 
   std::string text() {
     std::string fields, interpretations;
-    for (const auto& field : type_.fields) {
-      fields += "    {" + wrapped(*field, 5) + "},\n";
-    }
+    for (const auto& field : type_.fields) fields += "    {" + wrapped(*field, 5) + "},\n";
     std::size_t shown = 0;
     for (const auto& instance : type_.instances) {
       if (instance->is_peek) continue;
@@ -262,9 +260,7 @@ class TypeTables {
     const auto doc = cpp_string_pieces(field.doc, 92 - indent);
     words.push_back(doc[0]);
     std::string text = wrap(words, indent).substr(indent);
-    for (std::size_t i = 1; i < doc.size(); ++i) {
-      text += "\n" + std::string(indent, ' ') + doc[i];
-    }
+    for (std::size_t i = 1; i < doc.size(); ++i) text += "\n" + std::string(indent, ' ') + doc[i];
     return text;
   }
 
