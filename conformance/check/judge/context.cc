@@ -123,6 +123,11 @@ bool Context::comes(std::uint16_t node, const Observation& sent, machine::Addres
 }
 
 bool Context::taps_cross() const {
+  if (!taps_cross_) taps_cross_ = find_taps_cross();
+  return *taps_cross_;
+}
+
+bool Context::find_taps_cross() const {
   using Key = std::pair<machine::Address, std::uint16_t>;  // Source and number.
   std::map<Key, std::int64_t> up;                          // When each was passed on.
   std::set<Key> sent;                                      // By its mote.

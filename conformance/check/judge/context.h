@@ -292,6 +292,8 @@ struct Context {
     return node < logs_us_.size() && captured_ && !device(node).hearing;
   }
   void find_restarts();
+  bool find_taps_cross() const;
+  mutable std::optional<bool> taps_cross_;  // Found when it is asked for.
   int backlog_of(std::uint16_t node, std::size_t index) const;
   int backlog(std::uint16_t node, std::int64_t time_us) const;
   /// Findings that are told as one.

@@ -91,11 +91,13 @@ void Forwarding::judge_order(Line& line, const Passing& passing, const Observati
     // What came long ago may have been lost; then this is a later copy that the run does not show.
     const std::int64_t since_us = seen.place.time_us - context_.response_us(line.sink);
     if (!log && passing.last_us < since_us) {
-      if (up)
+      if (up) {
         severity =
             std::min(severity, context_.without(passing.sender, since_us, seen.place.time_us));
-      if (context_.comes(line.sink, seen, passing.net.src, passing.net.seq_num))
+      }
+      if (context_.comes(line.sink, seen, passing.net.src, passing.net.seq_num)) {
         severity = std::min(severity, Severity::kInconclusive);
+      }
     }
     context_.report("N2-ORDER"_rule, severity, seen.place, line.sink,
                     {std::string("The sink ") + (up ? "forwards " : "radiates ") +
