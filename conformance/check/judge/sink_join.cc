@@ -112,8 +112,8 @@ void SinkJoins::set_island(std::uint16_t sink, std::uint16_t island, const Place
   watch->island = island;
   if (listed(*watch) > 0) {
     context_.report("N9-MEMBERS"_rule, Severity::kNote, at, sink,
-                    {"The island becomes " + number(island) + " while " + number(listed(*watch)) +
-                         " motes are members; they are cut off.",
+                    {"The island becomes " + number(island) +
+                         "; members that are cut off: " + number(listed(*watch)) + ".",
                      "The sink forgets its members.",
                      {}});
   }
