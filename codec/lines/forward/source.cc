@@ -23,8 +23,7 @@ std::int64_t wall_ns() {
 }
 
 ReaderOptions reader_options(const std::string& name, Direction direction) {
-  ReaderOptions out{.direction = direction, .interface_name = name};
-  return out;
+  return {.direction = direction, .interface_name = name};
 }
 
 }  // namespace

@@ -172,8 +172,7 @@ class Alignment {
   ClockFit fitted(std::uint32_t a, std::uint32_t b) {
     const CommonFrames common = common_of(a, b);
     if (!goes_on(a, b, common)) return fit_clock(run_, common, options_);
-    ClockFit fit{.clocks = Clocks::kAgree, .frames = common.pairs.size()};
-    return fit;
+    return {.clocks = Clocks::kAgree, .frames = common.pairs.size()};
   }
 
   // Returns whether one file begins where the other ends, as when a recorder begins another, and

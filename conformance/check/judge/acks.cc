@@ -228,7 +228,7 @@ void Acks::judge_ack_order(std::uint16_t node, const Observation& seen, const Ar
   }
 }
 
-// Takes an ack of a number that never came for the one that a message waits for: it says both.
+// Takes an ack with a wrong number for the ack that a message waits for: one mistake, one finding.
 void Acks::meant_ack(std::uint16_t node, const Net& ack) {
   Ring<Arrived, kRoom>& ring = arrived_[node];
   for (std::size_t i = 0; i < ring.size(); ++i) {

@@ -239,9 +239,9 @@ Severity Context::on_line(std::uint16_t node, Severity severity) const {
 }
 
 Severity Context::unless_given(std::uint16_t sink, std::int64_t since_us, Severity severity) const {
-  if (device(sink).whole) return on_line(sink, severity);
   if (options.start_cold) since_us = std::max(since_us, run.start_us);
-  const bool given = has_lines(sink) && !half_heard(sink) && line_recorded(sink, since_us);
+  const bool given =
+      device(sink).whole || (has_lines(sink) && !half_heard(sink) && line_recorded(sink, since_us));
   return given ? on_line(sink, severity) : std::min(severity, Severity::kInconclusive);
 }
 

@@ -88,7 +88,8 @@ void Forwarding::judge_order(Line& line, const Passing& passing, const Observati
   if (passing.order > last.order && !passing.twin) last = {passing.order, passing.place.time_us};
   if (passing.order < last.order && !unclear) {
     Severity severity = context_.on_line(line.sink, Severity::kFail);
-    // What came long ago may have been lost; then this is a later copy that the run does not show.
+    // A message that came long ago may have been lost. Then a later copy of it, which the run does
+    // not show, is what leaves here.
     const std::int64_t since_us = seen.place.time_us - context_.response_us(line.sink);
     if (!log && passing.last_us < since_us) {
       if (up) {
@@ -237,7 +238,7 @@ bool Forwarding::relayed(Line& line, const Observation& seen, const Net& net) {
   if (heard->relayed < 255) ++heard->relayed;
   const bool all = net.dest.pid == machine::kBroadcastPid && net.sound && heard->passed == 0;
   if (right || (all && !again)) return true;
-  // All sinks have one AM address: another one of which no frame was found may have sent it.
+  // All sinks have one AM address, so another sink, of which no frame was found, may have sent it.
   const bool anothers = std::ranges::any_of(lines_, [&](const Line& other) {
     return other.sink != line.sink && !context_.device(other.sink).radio &&
            other.island == net.dest.pid;
