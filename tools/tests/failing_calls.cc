@@ -2,10 +2,11 @@
 //
 // FAIL_CALL names the call: open, read, write, rename, fsync, connect, accept or malloc; FAIL_AT
 // says which one after the begin of main(), counted from 1; FAIL_ERRNO is what it fails with, and
-// with 0 the program is killed there. How many there were goes to FAIL_COUNT, a file, when the
-// program exits or calls _exit.
+// with 0 the program is killed there. When the program exits or calls _exit, FAIL_COUNT, a file,
+// has how many there were, and after it the numbers of those that came from a new place: with
+// malloc a place is a call stack, which is listed at its 1st, 4th, 16th, 64th ... call.
 //
-// With FAIL_STEP, K, that call, the Kth after it and so on fail each in a process of its own, a
+// With FAIL_LIST, a file of ascending numbers, each of these calls fails in a process of its own, a
 // copy of this one at that place, which goes on to its end while this one waits. It works on a copy
 // of FAIL_FOLDER, which has the same name; so only what is in that folder may be written. FAIL_TALK
 // is a socket: the number and the copy's wait status go there as a line, and this one goes on when
@@ -16,16 +17,22 @@
 #include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <unwind.h>
 
+#include <array>
 #include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstdarg>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
+#include <mutex>
 #include <string>
+#include <vector>
 
 namespace {
 
@@ -38,8 +45,47 @@ std::atomic<long> count{0};
 const char* call = "";
 long fail_at = 0;
 int fail_errno = 0;
-long step = 0;
+std::vector<long> list;  // Of FAIL_LIST, the next one last.
 int talk = -1;
+
+// A stack as a number, and how often malloc was called from it. Arrays, as nothing may allocate
+// while allocations are counted.
+struct Stack {
+  std::uint64_t id;
+  unsigned calls;
+};
+std::array<Stack, 1 << 16> stacks;
+std::array<long, 1 << 17> new_places;
+std::size_t places = 0;
+std::mutex noting;
+
+std::uint64_t this_stack() {
+  std::uint64_t id = 0;
+  const auto add = [](_Unwind_Context* frame, void* sum) {
+    auto& out = *static_cast<std::uint64_t*>(sum);
+    out = (out ^ _Unwind_GetIP(frame)) * 0x9e3779b97f4a7c15;
+    out ^= out >> 29;
+    return _URC_NO_REASON;
+  };
+  _Unwind_Backtrace(add, &id);
+  return id;
+}
+
+void note_place(long number) {
+  const std::lock_guard lock{noting};
+  bool is_new = true;
+  if (std::strcmp(call, "malloc") == 0) {
+    const std::uint64_t id = this_stack();
+    std::size_t at = id % stacks.size();
+    while (stacks[at].calls != 0 && stacks[at].id != id) at = (at + 1) % stacks.size();
+    stacks[at].id = id;
+    const unsigned calls = ++stacks[at].calls;
+    is_new = (calls & (calls - 1)) == 0 && (calls & 0x55555555) != 0;
+  }
+  if (!is_new) return;
+  if (places == new_places.size() / 2) std::abort();  // Then the stacks may be full, too.
+  new_places[places++] = number;
+}
 
 // Gives the process places of its own in all files that it reads and writes, and makes the
 // descriptors of files of one folder lead to the same files of another.
@@ -88,8 +134,15 @@ bool is_copy() {
 // Returns whether this call has to fail.
 bool fails(const char* name) {
   if (!armed || std::strcmp(name, call) != 0) return false;
-  const long after = ++count - fail_at;
-  if (step == 0 ? after != 0 : after < 0 || after % step != 0 || !is_copy()) return false;
+  const long number = ++count;
+  if (fail_at == 0 && list.empty() && talk < 0) note_place(number);
+  if (list.empty()) {
+    if (number != fail_at) return false;
+  } else {
+    if (number != list.back()) return false;
+    list.pop_back();
+    if (!is_copy()) return false;
+  }
   if (fail_errno == 0) std::raise(SIGKILL);
   errno = fail_errno;
   return true;
@@ -99,10 +152,13 @@ void write_count() {
   if (!armed.exchange(false)) return;
   const char* const path = std::getenv("FAIL_COUNT");
   if (path == nullptr) return;
-  char text[24];
-  const int size = std::snprintf(text, sizeof text, "%ld\n", count.load());
   const long fd = ::syscall(SYS_openat, AT_FDCWD, path, O_WRONLY | O_CREAT | O_TRUNC, 0666);
-  ::syscall(SYS_write, fd, text, size);
+  const auto put = [fd](long number) {
+    char text[24];
+    ::syscall(SYS_write, fd, text, std::snprintf(text, sizeof text, "%ld\n", number));
+  };
+  put(count);
+  for (std::size_t place = 0; place < places; ++place) put(new_places[place]);
   ::syscall(SYS_close, fd);
 }
 
@@ -122,7 +178,8 @@ int armed_main(int argc, char** argv, char** environment) {
   call = text("FAIL_CALL", "");
   fail_at = std::atol(text("FAIL_AT", "0"));
   fail_errno = std::atoi(text("FAIL_ERRNO", "5"));
-  step = std::atol(text("FAIL_STEP", "0"));
+  std::ifstream numbers{text("FAIL_LIST", "")};
+  for (long number = 0; numbers >> number;) list.insert(list.begin(), number);
   talk = std::atoi(text("FAIL_TALK", "-1"));
   armed = true;
   const int code = real_main(argc, argv, environment);

@@ -2,7 +2,8 @@
 """Each call that can fail fails once, at each place of what a command does.
 
 No command may hang or crash, end with 0 without having done all, or lose a file or what it
-confirmed. Of the places of malloc about 40 are tried of each session, and with --all all.
+confirmed. A place of malloc is a call stack, and it fails at the 1st, 4th, 16th ... call from
+there. About 40 of these are tried of each session, and with --all all.
 Usage: faults_test.py RUBRIC FAILING_CALLS [--all]
 """
 import contextlib
@@ -135,16 +136,16 @@ class Faults(testing.Folder):
         self.old.write_bytes(OLD)
         good = self.run_with(words, call, 0)
         self.assertIn(good.returncode, (0, 1, 3), (words, good.stderr))
-        all_of_them = int(self.count.read_text())
-        step = 1 if call != "malloc" or ALL else max(1, all_of_them // 40)  # Spread over all.
-        return range(1, all_of_them + 1, step), good, timeless(self.old.read_bytes())
+        numbers = [int(line) for line in self.count.read_text().splitlines()[1:]]
+        step = 1 if call != "malloc" or ALL else max(1, len(numbers) // 40)  # Spread over all.
+        return numbers[::step], good, timeless(self.old.read_bytes())
 
     def one_by_one(self, words, call, numbers, failure):
         """Yields how the session ends where each of these calls fails, and what it wrote."""
         for number in numbers:
             self.old.write_bytes(OLD)
             done = self.run_with(words, call, number, failure)
-            left = {path.name for path in self.folder.iterdir()} - {"count"}
+            left = {path.name for path in self.folder.iterdir()} - {"count", "listed"}
             yield number, done, self.old.read_bytes(), left
 
     def in_copies(self, words, call, numbers, failure):
@@ -153,11 +154,13 @@ class Faults(testing.Folder):
         folder.mkdir()
         old, out, err = (folder / name for name in ("old", "out", "err"))
         old.write_bytes(OLD)
+        listed = self.folder / "listed"
+        listed.write_text("\n".join(map(str, numbers)))
         ours, theirs = socket.socketpair()
         with contextlib.ExitStack() as stack:
             stack.callback(shutil.rmtree, folder)
-            environment = dict(self.failing(call, numbers[0], failure), FAIL_FOLDER=str(folder),
-                               FAIL_STEP=str(numbers.step), FAIL_TALK=str(theirs.fileno()))
+            environment = dict(self.failing(call, 0, failure), FAIL_FOLDER=str(folder),
+                               FAIL_LIST=str(listed), FAIL_TALK=str(theirs.fileno()))
             with open(out, "wb") as to_out, open(err, "wb") as to_err:
                 run = stack.enter_context(subprocess.Popen(
                     [RUBRIC, *self.named(words, old)], env=environment, stdout=to_out,
