@@ -8,9 +8,18 @@ namespace {
 // What decodes in some hundred microseconds and stays in a core's cache.
 constexpr std::size_t kBatchBytes = 64 * 1024;
 constexpr std::size_t kBatchPackets = 1024;
-constexpr std::size_t kWaitingMost = 8;  // Batches: memory does not grow with the capture.
+constexpr std::size_t kBatchesMost = 16;  // At once: memory does not grow with the capture.
 
 }  // namespace
+
+void DecodeThreads::Batch::clear() {
+  kept.clear();
+  bytes.clear();
+  names.clear();
+  out.clear();
+  part = {};
+  thrown = nullptr;
+}
 
 DecodeThreads::DecodeThreads(std::size_t threads, const std::function<Decode()>& make, Take take)
     : take_(std::move(take)) {
@@ -81,7 +90,7 @@ void DecodeThreads::begin_batch(std::size_t bytes) {
 // Hands the batch to the threads. Returns false if no more is wanted.
 bool DecodeThreads::pass_on() {
   std::unique_lock lock(mutex_);
-  went_.wait(lock, [this] { return waiting_.size() < kWaitingMost; });
+  taken_.wait(lock, [this] { return filling_->place < turn_ + kBatchesMost; });
   waiting_.push_back(std::move(filling_));
   came_.notify_one();
   return wanted_;
@@ -90,7 +99,7 @@ bool DecodeThreads::pass_on() {
 void DecodeThreads::finish() {
   if (filling_) pass_on();
   std::unique_lock lock(mutex_);
-  turn_came_.wait(lock, [this] { return turn_ == batches_; });
+  taken_.wait(lock, [this] { return turn_ == batches_; });
   if (thrown_) std::rethrow_exception(thrown_);
 }
 
@@ -101,40 +110,46 @@ void DecodeThreads::run(const Decode& decode) {
     if (waiting_.empty()) return;
     std::unique_ptr<Batch> batch = std::move(waiting_.front());
     waiting_.pop_front();
-    went_.notify_one();
-    bool wanted = wanted_;
-    DecodedPart part;
-    std::exception_ptr thrown;
+    const bool wanted = wanted_;
     lock.unlock();
     try {
       for (std::size_t i = 0; wanted && i < batch->kept.size(); ++i) {
-        decode(batch->kept[i].packet, batch->kept[i].record, batch->out, part);
+        decode(batch->kept[i].packet, batch->kept[i].record, batch->out, batch->part);
       }
     } catch (...) {
-      thrown = std::current_exception();
+      batch->thrown = std::current_exception();
     }
     lock.lock();
-    turn_came_.wait(lock, [&] { return turn_ == batch->place; });
-    wanted = wanted_ && !thrown;
+    const std::uint64_t place = batch->place;
+    decoded_.emplace(place, std::move(batch));
+    take_decoded(lock);
+  }
+}
+
+// Passes on the batches whose turn it is, unless another thread does so: none waits for a turn.
+void DecodeThreads::take_decoded(std::unique_lock<std::mutex>& lock) {
+  if (taking_) return;
+  taking_ = true;
+  while (const auto next = decoded_.extract(turn_)) {
+    std::unique_ptr<Batch> batch = std::move(next.mapped());
+    bool wanted = wanted_ && !batch->thrown;
     if (wanted) {
-      lock.unlock();  // Nobody else has the turn.
+      lock.unlock();
       try {
-        wanted = take_(batch->out, part);
+        wanted = take_(batch->out, batch->part);
       } catch (...) {
-        thrown = std::current_exception();
+        batch->thrown = std::current_exception();
       }
       lock.lock();
     }
-    if (thrown && !thrown_) thrown_ = thrown;
-    wanted_ = wanted && !thrown;
+    if (batch->thrown && !thrown_) thrown_ = batch->thrown;
+    wanted_ = wanted && !batch->thrown;
     ++turn_;
-    turn_came_.notify_all();
-    batch->kept.clear();
-    batch->bytes.clear();
-    batch->names.clear();
-    batch->out.clear();
+    taken_.notify_one();
+    batch->clear();
     free_.push_back(std::move(batch));
   }
+  taking_ = false;
 }
 
 }  // namespace rubric::tools

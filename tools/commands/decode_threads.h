@@ -7,6 +7,7 @@
 #include <deque>
 #include <exception>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -62,9 +63,14 @@ class DecodeThreads {
     std::vector<std::uint8_t> bytes;  // Of the packets; never moves once there is one.
     std::deque<std::string> names;    // Of their interfaces.
     format::Buffer out;
+    DecodedPart part;
+    std::exception_ptr thrown;
+
+    void clear();
   };
 
   void run(const Decode& decode);
+  void take_decoded(std::unique_lock<std::mutex>& lock);
   void end();
   bool pass_on();
   void begin_batch(std::size_t bytes);
@@ -75,10 +81,11 @@ class DecodeThreads {
   std::uint64_t batches_ = 0;
 
   std::mutex mutex_;
-  std::condition_variable came_;  // A batch, or the end.
-  std::condition_variable went_;  // A batch was begun.
-  std::condition_variable turn_came_;
+  std::condition_variable came_;   // A batch, or the end.
+  std::condition_variable taken_;  // A batch was passed on.
   std::deque<std::unique_ptr<Batch>> waiting_;
+  std::map<std::uint64_t, std::unique_ptr<Batch>> decoded_;  // By place.
+  bool taking_ = false;                                      // A thread passes batches on.
   std::vector<std::unique_ptr<Batch>> free_;
   std::uint64_t turn_ = 0;  // The place of the batch that is passed on next.
   bool ended_ = false;
