@@ -86,7 +86,7 @@ void refuse_other_kind(const YAML::Node& node, KnownTo command) {
   }
 }
 
-// Reads an entry; a list of skipped cases makes one of each.
+// Reads an entry; a list of cases makes one of each.
 std::vector<KnownFailure> read_one(const YAML::Node& node, KnownTo command,
                                    const std::function<std::string(const std::string&)>& mistake) {
   KnownFailure one;
@@ -110,7 +110,8 @@ std::vector<KnownFailure> read_one(const YAML::Node& node, KnownTo command,
     if (name == "reason" && empty) throw Mistake{line, "reason is empty: say why this is known"};
     std::string& text = one.*key->text;
     if (!text.empty()) throw Mistake{line, name + " is given twice"};
-    const bool is_list = name == "skip" && pair.second.IsSequence() && pair.second.size() > 0;
+    const bool is_list =
+        key->text == &KnownFailure::cases && pair.second.IsSequence() && pair.second.size() > 0;
     if (is_list) {
       for (const YAML::Node& each : pair.second) listed_cases.push_back(scalar(each, name));
     }

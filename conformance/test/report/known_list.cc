@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <set>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -56,10 +57,11 @@ std::string message_of(const runner::Failure& failure) {
   return fmt::format("{} {} {}", node, asked->link, asked->message.name);
 }
 
+// What cases fail by, all listed in one entry.
 struct KnownEntry {
   std::string rule;
-  std::string cases;
   std::string message;
+  std::string reason;
   std::string target;
   std::string profile;
   auto operator<=>(const KnownEntry&) const = default;
@@ -72,11 +74,18 @@ std::string limits(const std::string& target, const std::string& profile) {
   return out;
 }
 
+template <class Names>
+std::string yaml_list(const Names& names) {
+  if (names.size() == 1) return ' ' + *names.begin() + '\n';
+  std::string out = "\n";
+  for (const std::string& name : names) out += "    - " + name + '\n';
+  return out;
+}
+
 std::string skip_entry(const std::vector<std::string>& cases, const std::string& reason,
                        const std::string& target) {
-  std::string out = "- skip:\n";
-  for (const std::string& name : cases) out += "    - " + name + '\n';
-  return out + "  reason: " + yaml_text(reason) + '\n' + limits(target, "");
+  return "- skip:" + yaml_list(cases) + "  reason: " + yaml_text(reason) + '\n' +
+         limits(target, "");
 }
 
 class KnownList {
@@ -93,19 +102,19 @@ class KnownList {
         "and\n# wants a reason for each entry.\n";
     for (const reflect::Requirement& rule : reflect::requirements()) {
       bool first = true;
-      for (const auto& [entry, reason] : failures_) {
+      for (const auto& [entry, cases] : failures_) {
         if (entry.rule != rule.id) continue;
         if (std::exchange(first, false)) {
           out += comment(fmt::format("{} ({}): {}", rule.id, rule.level, rule.sentence));
         }
-        out += failure_entry(entry, reason);
+        out += failure_entry(entry, cases);
       }
     }
     bool first = true;
-    for (const auto& [entry, reason] : failures_) {
+    for (const auto& [entry, cases] : failures_) {
       if (entry.rule != "none") continue;
       if (std::exchange(first, false)) out += comment("No rule");
-      out += failure_entry(entry, reason);
+      out += failure_entry(entry, cases);
     }
     for (const auto& [why, cases] : undecided_) {
       const auto& [said, reason, target] = why;
@@ -129,20 +138,19 @@ class KnownList {
       if (failure.weak || (!known && one.expectation == Expectation::kAsExpected)) continue;
       const std::string rule = failure.requirements.empty() ? "none" : failure.requirements.front();
       const std::string profile = one.profile == "paper" ? "" : one.profile;
-      failures_.insert(
-          {{rule, one.name, message_of(failure), target, profile}, known.value_or("")});
+      failures_[{rule, message_of(failure), known.value_or(""), target, profile}].insert(one.name);
     }
   }
 
-  static std::string failure_entry(const KnownEntry& entry, const std::string& reason) {
-    return fmt::format("- case: {}\n  requirement: {}\n  message: {}\n  reason: {}\n{}",
-                       entry.cases, entry.rule, yaml_text(entry.message), yaml_text(reason),
-                       limits(entry.target, entry.profile));
+  static std::string failure_entry(const KnownEntry& entry, const std::set<std::string>& cases) {
+    return fmt::format("- case:{}  requirement: {}\n  message: {}\n  reason: {}\n{}",
+                       yaml_list(cases), entry.rule, yaml_text(entry.message),
+                       yaml_text(entry.reason), limits(entry.target, entry.profile));
   }
 
   const SuiteRun& run_;
   const report::KnownFailures& known_;
-  std::map<KnownEntry, std::string> failures_;  // With their reasons.
+  std::map<KnownEntry, std::set<std::string>> failures_;  // The names of the cases.
   std::map<std::tuple<std::string, std::string, std::string>, std::vector<std::string>> undecided_;
 };
 

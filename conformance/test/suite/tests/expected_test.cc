@@ -100,6 +100,8 @@ TEST(Expected, FamiliesGlobsAndLinesWithoutRule) {
            "\n  message: nothing\n  reason: Known.\n";
   };
   EXPECT_EQ(hold(entry("'j4.*'", "J4"), failed({kAck})).exit_code, 0);
+  EXPECT_EQ(hold(entry("[j4.accept]", "J4"), failed({kAck})).exit_code, 0);
+  EXPECT_EQ(hold(entry("[j4.gone, j4.accept]", "J4"), failed({kAck})).untrue.size(), 1U);
   EXPECT_EQ(hold(entry("j4.accept", "none"), failed({kAck})).exit_code, 1);
   EXPECT_EQ(hold(entry("j4.accept", "none"), failed({failure({}, "nothing")})).exit_code, 0);
 }
@@ -257,7 +259,8 @@ TEST(ExpectedFile, SaysWhatIsWrongAndWhere) {
   EXPECT_EQ(why("- x"), "k.yaml:1: expected case, requirement, message and reason");
   EXPECT_EQ(why("- case: x\n  message: y\n  reason: z\n"), "k.yaml:1: requirement is missing");
   EXPECT_EQ(why("\n- case: x\n  case: y\n"), "k.yaml:3: case is given twice");
-  EXPECT_EQ(why("- case: [x]\n"), "k.yaml:1: case: expected a text");
+  EXPECT_EQ(why("- case: {x: y}\n"), "k.yaml:1: case: expected a text");
+  EXPECT_EQ(why("- case: [x, [y]]\n"), "k.yaml:1: case: expected a text");
   EXPECT_THAT(why("- requirement: J44\n"), HasSubstr("k.yaml:1: no requirement is called 'J44'"));
   EXPECT_THAT(why("- profile: x\n"), HasSubstr("profile is paper or deployed"));
   EXPECT_THAT(why("- nodes: x\n"), HasSubstr("unknown key 'nodes'"));
