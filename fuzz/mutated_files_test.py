@@ -32,7 +32,8 @@ NUMBERS = [b"\0", b"\xff", b"\x7f", b"\x80", b"\0\0", b"\xff\xff", b"\xff\xff\xf
            b"\0\0\0\x80", b"\x7e", b"\x7d"]
 CAPTURE = ROOT / "spec/captures/firmware/d1_lose_request.pcapng"
 ENVIRONMENT = {**os.environ,
-               "ASAN_OPTIONS": f"exitcode={SANITIZER}:detect_leaks=0:allocator_may_return_null=1:malloc_context_size=1",
+               "ASAN_OPTIONS": f"exitcode={SANITIZER}:detect_leaks=0:"
+                               "allocator_may_return_null=1:malloc_context_size=1",
                "UBSAN_OPTIONS": f"exitcode={SANITIZER}:print_stacktrace=1"}
 
 
