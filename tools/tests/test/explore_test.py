@@ -2,7 +2,7 @@
 """Tests of `rubric explore` as a program: verdicts, exit codes, formats, where traces go, and the
 state diagrams against those that were read and found right.
 
-Usage: explore_test.py RUBRIC [--regenerate]: writes the diagrams of tools/tests/expect anew; read
+Usage: explore_test.py RUBRIC [--regenerate]: writes tools/tests/test/expect anew; read
 the difference.
 """
 

@@ -2,7 +2,7 @@
 """`rubric check` as its users meet it.
 
 Usage: check_test.py RUBRIC [--regenerate] in the project's folder; --regenerate writes the texts in
-tools/tests/expect/text anew instead of comparing with them.
+tools/tests/check/expect anew instead of comparing with them.
 """
 
 import json
@@ -17,7 +17,7 @@ from testing import FIRMWARE, Folder, on_terminal, rubric, some
 
 REGENERATE = "--regenerate" in sys.argv and (sys.argv.remove("--regenerate") or True)
 BASESTATION = pathlib.Path("spec/captures/basestation")
-EXPECT = pathlib.Path("tools/tests/expect")
+EXPECT = pathlib.Path("tools/tests/check/expect")
 WRONG_SEQ = FIRMWARE / "g2_stray_reply_while_joining.pcapng"
 CLEAN = FIRMWARE / "f_synaptic.pcapng"
 
@@ -54,12 +54,12 @@ def capture_files():
 class Text(Folder):
     def test_golden(self):
         for name, files in GOLDEN.items():
-            path = EXPECT / "text" / f"{name}.txt"
+            path = EXPECT / f"{name}.txt"
             out = check(*files)[1]
             if REGENERATE:
                 path.write_text(out)
             self.assertEqual(out, path.read_text(),
-                             f"{path}; renew with tools/tests/check_test.py RUBRIC --regenerate")
+                             f"{path}; renew with check_test.py RUBRIC --regenerate")
 
     def test_a_frame_has_the_number_that_decode_shows(self):
         seen = 0

@@ -17,9 +17,9 @@ import unittest
 
 from extcap_testing import EXTCAP, FORWARDER, PACKET, SERIAL, Base, decoded, run
 from live_testing import Forwarder
+from odd_specs import FLOATING, UNPROVED
 from packets import radio
 from serial_testing import PATIENCE_S, Pty, hdlc, read_until, wait_for
-from specs_test import FLOATING, UNPROVED
 from testing import ROOT, RUBRIC
 
 KAITAI = ROOT / "spec/kaitai_check"
