@@ -161,7 +161,9 @@ class Explore(Folder):
 
     def test_usage(self):
         for words, text in [(["--flaw", "no_fial"], "did you mean 'no_fail'"),
+                            (["--flaw", "foo"], "--flaw: expected one of accepts_wrong_seq, "),
                             (["--property", "one_terminl"], "did you mean 'one_terminal'"),
+                            (["--property", "foo"], "--property: expected one of "),
                             (["--flaw", "time_of_boot"], "time is abstract"),
                             (["--flaw", "misread_acks"], "--scope full"),
                             (["--profile", "papr"], "did you mean 'paper'"),
