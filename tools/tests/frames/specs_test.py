@@ -470,7 +470,8 @@ class File(Folder):
                          f"{file}:10:15: error: unknown type 'u9'; did you mean 'u1'?\n"
                          "            type: u9\n                  ^\n")
         gone = rubric("decode", "--spec", "gone.ksy", stdin="")
-        self.assertEqual((gone.returncode, gone.stderr), (66, "gone.ksy: error: cannot be read\n"))
+        self.assertEqual((gone.returncode, gone.stderr),
+                         (66, "rubric: gone.ksy: No such file or directory\n"))
         radio = self.file("meta: {id: bad}\ntypes:\n  frame:\n    -carrier: radio_t\n"
                           "    seq: [{id: a, type: u1}]\n")
         done = rubric("decode", "--spec", radio, stdin="")
