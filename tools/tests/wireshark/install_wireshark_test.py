@@ -450,6 +450,11 @@ class Install(Base):
         self.install("--dir", self.home / "w")
         self.assertEqual(self.tree(), ["w/extcap/rubric-extcap", "w/plugins/rubric.lua"])
         self.install("--dir", "", code=64)
+        file = self.home / "w/plugins/rubric.lua"
+        for folder in (file, file / "deeper"):
+            for words in ([], ["--dry-run"]):
+                said = self.install("--dir", folder, *words, code=74)
+                self.assertIn(f"{file}: this is no folder", said)
 
     def test_files_of_others_stay(self):
         self.install("--dir", self.home)
