@@ -443,6 +443,24 @@ class Inputs(Folder):
         self.assertEqual([(one["requirement"], one["severity"]) for one in found],
                          [("J9-INTERLEAVE", "inconclusive")])
 
+    def test_no_explanation_comes_twice(self):
+        run = self.folder / "run.pcapng"
+        rubric("simulate", "--motes", "3", "--out-pcapng", run)
+        frames = [json.loads(line) for line in
+                  rubric("decode", run, "--format", "jsonl")[1].splitlines()]
+        for frame in [one for one in frames if one["message"] == "ack_join"][:2]:
+            frame["fields"]["seq_num"] += 1
+            del frame["raw"]
+            frame["frame"].pop("fcs", None)
+        lines = "".join(json.dumps(frame) + "\n" for frame in frames)
+        wrong = self.folder / "wrong.pcapng"
+        self.assertEqual(rubric("encode", "--format", "pcapng", "-o", wrong, stdin=lines)[0], 0)
+        found = [one for one in failures(as_json(wrong)) if one["requirement"] == "J6-SEQ"]
+        self.assertTrue(found)
+        for one in found:
+            said = [json.dumps(hypothesis) for hypothesis in one["hypotheses"]]
+            self.assertEqual(sorted(said), sorted(set(said)))
+
     def test_testers_are_not_judged(self):
         self.assertEqual(as_json(WRONG_SEQ, "--tester", "2")["counts"]["fail"], 0)
 
