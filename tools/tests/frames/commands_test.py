@@ -252,6 +252,8 @@ class Encode(Folder):
         self.assertEqual(first, f"rubric: {file}:3: value: expected a number from 0 to 65535, "
                                 "given 70000 (WIRE-CONFIG)")
         self.assertTrue(second.startswith(f"rubric: {file}:4:"), second)
+        err = rubric("encode", stdin="00 ffff 0000")[2]
+        self.assertIn("stdin:1:2: hex digits, no JSON; 'rubric convert' reads frames as hex", err)
 
     def test_fields_changed_beside_raw(self):
         line = json.loads(self.decoded(SERIAL).splitlines()[0])
