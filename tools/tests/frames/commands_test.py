@@ -482,6 +482,8 @@ class Explain(ProgramTest):
         code, _, err = rubric("explain", "NOPE")
         self.assertEqual(code, 64)
         self.assertTrue(err.startswith("rubric explain: nothing is called 'NOPE'"), err)
+        err = rubric("explain", "README.md")[2]
+        self.assertIn("'README.md' is a file; 'rubric decode' prints its frames", err)
 
     def test_long_lists_of_cases_are_cut(self):
         out = rubric("explain", "J1-REQUEST")[1].decode()
