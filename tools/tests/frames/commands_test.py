@@ -543,6 +543,17 @@ class Simulate(ProgramTest):
         self.assertEqual(rubric("simulate", "--seconds", "1", "--seed", str(2**64 - 1))[0], 0)
 
 
+class Stats(Folder):
+    def test_a_rate_needs_a_second(self):
+        join = CAPTURES / "firmware/a_join_data.pcapng"
+        lines = rubric("decode", join, "--format", "jsonl")[1].splitlines(keepends=True)
+        for count, says in ((len(lines), "10.22 frames/s over 14.773 s"), (2, "within 0.008835 s")):
+            path = self.folder / "first.pcapng"
+            rubric("encode", "--format", "pcapng", "-o", path, stdin=b"".join(lines[:count]))
+            out = self.shows(("stats", path), f"0 malformed, {says}")
+            self.assertEqual("frames/s" in out, count > 2, out)
+
+
 class Messages(ProgramTest):
     def test_text_and_json(self):
         code, out, _ = rubric("messages")
