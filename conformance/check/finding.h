@@ -30,6 +30,8 @@ struct Hypothesis {
   std::string text;     ///< The supposition, one sentence.
   std::string allowed;  ///< The frames it would have allowed next.
   std::string miss;     ///< Expected and seen, where it broke.
+
+  bool operator==(const Hypothesis&) const = default;
 };
 
 struct Finding {

@@ -163,9 +163,9 @@ function(rubric_label_test name label foreign targets)
   endif()
 endfunction()
 
-# Adds a ctest entry, run from the project's folder; with PARTS n of them, which run side by side:
-# each takes its share of the tests by GoogleTest's variables, which tools/tests/live_testing.py
-# reads as well.
+# Adds a ctest entry, run from the project's folder; Python finds the modules that tests share in
+# tools/tests. With PARTS n entries, which run side by side: each takes its share of the tests by
+# GoogleTest's variables, which tools/tests/live_testing.py reads as well.
 function(rubric_add_test name parts label foreign targets)
   if(NOT parts)
     set(parts 1)
@@ -177,6 +177,8 @@ function(rubric_add_test name parts label foreign targets)
     endif()
     math(EXPR index "${part} - 1")
     add_test(NAME ${entry} COMMAND ${ARGN} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+    set_tests_properties(${entry} PROPERTIES
+      ENVIRONMENT_MODIFICATION PYTHONPATH=path_list_prepend:${PROJECT_SOURCE_DIR}/tools/tests)
     rubric_label_test(${entry} "${label}" "${foreign}" "${targets}")
     if(parts GREATER 1)
       set_tests_properties(${entry} PROPERTIES ENVIRONMENT

@@ -161,15 +161,17 @@ std::string at_least_one(const std::string& text) {
   return fmt::format("expected a whole number of 1 or more, given '{}'", text);
 }
 
+Check expect_one_of(std::vector<std::string> values) {
+  return [values = std::move(values)](const std::string& text) -> std::string {
+    if (std::find(values.begin(), values.end(), text) != values.end()) return {};
+    return fmt::format("expected one of {}; given '{}'{}", fmt::join(values, ", "), text,
+                       reflect::did_you_mean(text, values));
+  };
+}
+
 Option& Option::one_of(std::vector<std::string> values) {
   const std::string shown = fmt::format("{{{}}}", fmt::join(values, ","));
-  return check(
-      [values = std::move(values)](const std::string& text) -> std::string {
-        if (std::find(values.begin(), values.end(), text) != values.end()) return {};
-        return fmt::format("expected one of {}; given '{}'{}", fmt::join(values, ", "), text,
-                           reflect::did_you_mean(text, values));
-      },
-      shown);
+  return check(expect_one_of(std::move(values)), shown);
 }
 
 Option& Option::between(int min, int max) {
@@ -392,6 +394,11 @@ int Command::parse_and_run(int argc, char** argv) {
     return innermost().complain(fmt::format("{}: expected a number, given '{}'",
                                             what.substr(option, value - option),
                                             what.substr(value + 3)));
+  } catch (const CLI::ArgumentMismatch& error) {
+    // "--id: 1 required TEXT missing"; all that may miss a value is an option.
+    const std::string what = error.what();
+    return innermost().complain(
+        what.ends_with(" missing") ? what.substr(0, what.find(':')) + " needs a value" : what);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app_->exit(error);  // --help, --version
     return innermost().complain(error.what());

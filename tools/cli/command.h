@@ -49,6 +49,9 @@ using Check = std::function<std::string(const std::string& text)>;
 std::string at_least_one(const std::string& text);
 /// Accepts a whole number of 0 or more; the library alone takes -1 for the greatest number.
 std::string whole_number(const std::string& text);
+/// Returns a check that accepts one of the values. It does not show them in the help, as
+/// Option::one_of() does.
+Check expect_one_of(std::vector<std::string> values);
 
 /// An option or a positional argument of a command. A handle, as long-lived as its command.
 class Option {

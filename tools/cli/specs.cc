@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <memory>
 #include <mutex>
 #include <set>
@@ -21,6 +24,7 @@
 #include "spec/compiler/load/load.h"
 #include "tools/cli/command.h"
 #include "tools/cli/exit_codes.h"
+#include "tools/cli/verdict.h"
 
 namespace rubric::cli {
 namespace {
@@ -67,6 +71,14 @@ void require_sound(rubricc::Model& model, rubricc::Diagnostics& diagnostics) {
 
 bool names_file(std::string_view spec) { return spec.ends_with(".ksy"); }
 
+/// Reads the specs of a file into the model. Ends the command if the file itself is not there.
+void load_file(const std::string& file, rubricc::Model& model, rubricc::Diagnostics& diagnostics) {
+  if (::access(file.c_str(), R_OK) != 0) {
+    unreadable(fmt::format("{}: {}", file, std::strerror(errno)));
+  }
+  rubricc::load_specs({file}, model, diagnostics, shipped_specs());
+}
+
 /// Reads a shipped spec, or a file.
 const reflect::Protocol& read_spec(const std::string& spec) {
   const auto [at, fresh] = read_specs().try_emplace(spec);
@@ -75,7 +87,7 @@ const reflect::Protocol& read_spec(const std::string& spec) {
   rubricc::Diagnostics diagnostics;
   add_requirements(read.model);
   if (names_file(spec)) {
-    rubricc::load_specs({spec}, read.model, diagnostics, shipped_specs());
+    load_file(spec, read.model, diagnostics);
     rubricc::add_am_frames(shipped_specs(), read.model, diagnostics);
   } else {
     rubricc::load_shipped_spec(spec, shipped_specs(), read.model, diagnostics);
@@ -253,7 +265,7 @@ std::set<std::string> copies_in(const std::string& file) {
   rubricc::Model model;
   rubricc::Diagnostics diagnostics;
   diagnostics.pardon_code();
-  rubricc::load_specs({file}, model, diagnostics, shipped_specs());
+  load_file(file, model, diagnostics);
   std::set<std::string> out;
   for (const auto& one : model.specs) {
     const bool ships = one->file.starts_with("<shipped>");
@@ -288,7 +300,7 @@ std::string dissector_with(const std::string& spec) {
     rubricc::load_shipped_spec(name, shipped_specs(), model, diagnostics);
   }
   if (!shipped) {
-    rubricc::load_specs({spec}, model, diagnostics, shipped_specs());
+    load_file(spec, model, diagnostics);
     rubricc::add_am_frames(shipped_specs(), model, diagnostics);
   }
   require_sound(model, diagnostics);

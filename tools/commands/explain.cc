@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <cctype>
@@ -147,6 +148,11 @@ std::string rules_like(const std::string& name) {
 }
 
 [[noreturn]] void nothing_of(const std::string& name, const Protocol& protocol) {
+  struct stat status {};
+  if (::stat(name.c_str(), &status) == 0 && S_ISREG(status.st_mode)) {
+    throw cli::UsageError(fmt::format(
+        "'{}' is a file; 'rubric decode' prints its frames, 'rubric check' judges them", name));
+  }
   const std::vector<std::string> names = all_names(protocol);
   std::string hint = reflect::did_you_mean(name, names);
   if (hint.empty()) hint = reflect::did_you_mean(in_case(name, std::tolower), names);

@@ -9,7 +9,6 @@
 #include <thread>
 #include <vector>
 
-#include "codec/reflect/suggest.h"
 #include "codec/text/json.h"
 #include "codec/text/text.h"
 #include "conformance/explore/counterexample.h"
@@ -82,23 +81,14 @@ std::string explore_footer() {
 [[noreturn]] void usage(const std::string& what) { throw cli::UsageError(what); }
 
 template <class Table>
-[[noreturn]] void unknown(const char* what, const std::string& word, const Table& table) {
+std::vector<std::string> names_of(const Table& table) {
   std::vector<std::string> names;
   for (const auto& entry : table) names.emplace_back(entry.name);
-  usage(fmt::format("unknown {} '{}'{}", what, word, reflect::did_you_mean(word, names)));
+  return names;
 }
 
 machine::Profile chosen_profile(const ExploreOptions& options) {
-  const machine::NamedProfile* const profile = machine::find_profile(options.profile);
-  if (profile == nullptr) unknown("profile", options.profile, machine::kProfiles);
-  return profile->profile;
-}
-
-// Returns the chosen flaw, or null.
-const flaws::Flaw* chosen_flaw(const ExploreOptions& options) {
-  const flaws::Flaw* const flaw = flaws::find(options.flaw);
-  if (flaw == nullptr && !options.flaw.empty()) unknown("flaw", options.flaw, flaws::all());
-  return flaw;
+  return machine::find_profile(options.profile)->profile;
 }
 
 // Returns the meaning of the options' words.
@@ -120,7 +110,7 @@ explore::Options resolve(const ExploreOptions& options) {
   // Messages that are heard again are answered with new numbers: without a limit there is no end.
   const bool endless = network.scope == Scope::kFull && network.dup && network.dups == 0;
   if (endless) network.dups = 1;
-  if (const flaws::Flaw* const flaw = chosen_flaw(options)) {
+  if (const flaws::Flaw* const flaw = flaws::find(options.flaw)) {
     if (flaw->seen == flaws::Seen::kTime) {
       usage(fmt::format("flaw {} shows only where time runs; time is abstract here", flaw->name));
     }
@@ -131,9 +121,7 @@ explore::Options resolve(const ExploreOptions& options) {
   }
   if (!options.properties.empty()) network.properties = 0;
   for (const std::string& name : options.properties) {
-    const auto property = explore::property_named(name);
-    if (!property) unknown("property", name, explore::properties());
-    network.properties |= explore::bit(*property);
+    network.properties |= explore::bit(*explore::property_named(name));
   }
   return network;
 }
@@ -325,7 +313,7 @@ std::string trace_text(explore::Nodes& nodes, const ExploreOptions& options,
 
 void run_explore(const ExploreOptions& options) {
   if (options.transitions.wanted) {
-    const flaws::Flaw* const flaw = chosen_flaw(options);
+    const flaws::Flaw* const flaw = flaws::find(options.flaw);
     return print_transitions(options.transitions,
                              {options.profile, chosen_profile(options), options.flaw,
                               flaw == nullptr ? machine::step : flaw->step},
@@ -433,11 +421,14 @@ void add_explore(cli::Command& app) {
   sub.add_option("--scope", options->scope,
                  "Explore joins alone: join; and messages of members: full")
       .one_of({"join", "full"});
-  sub.add_option("--property", options->properties, "Check only these (default: all)");
+  sub.add_option("--property", options->properties, "Check only these (default: all)")
+      .check(cli::expect_one_of(names_of(explore::properties())));
   sub.add_option("--flaw", options->flaw,
                  "Give the machine this flaw of release 1.0; one that needs an old reply shows "
-                 "with --calls 2, one that needs messages with --scope full");
-  sub.add_option("--profile", options->profile, "Keep to paper or deployed");
+                 "with --calls 2, one that needs messages with --scope full")
+      .check(cli::expect_one_of(names_of(flaws::all())));
+  sub.add_option("--profile", options->profile, "Keep to paper or deployed")
+      .one_of(names_of(machine::kProfiles));
   add_bounds(sub, *options);
   sub.add_option("--format", options->format,
                  "Print text or json; transitions also as dot (Graphviz)")

@@ -119,6 +119,9 @@ class Place {
       refuse(path_, "this is not ours; --force replaces or removes it");
     }
     if (fs::is_directory(fs::symlink_status(path_))) refuse(path_, "this is a folder");
+    fs::path there = folder_;
+    while (there.has_relative_path() && !is_there(there)) there = there.parent_path();
+    if (std::error_code error; !fs::is_directory(there, error)) refuse(there, "this is no folder");
   }
 
   const fs::path& path() const { return path_; }

@@ -9,6 +9,7 @@
 #include <system_error>
 #include <utility>
 
+#include "codec/containers/hex_reader.h"
 #include "codec/generated/tinyos/enums.h"
 #include "codec/lines/stop.h"
 #include "codec/reflect/encode_number.h"
@@ -31,6 +32,15 @@ constexpr int kSerialGroup = 0;
 constexpr int kRadioGroup = 0x22;  // TinyOS's default.
 
 constexpr std::size_t kChunkBytes = 256 * 1024;
+constexpr std::string_view kHexIsNoJson =
+    "hex digits, no JSON; 'rubric convert' reads frames as hex, and 'rubric decode --format jsonl' "
+    "prints them as JSON lines";
+
+bool is_hex(std::string_view line) {
+  std::vector<std::uint8_t> bytes;
+  const Bytes text(reinterpret_cast<const std::uint8_t*>(line.data()), line.size());
+  return decode_hex_line(text, bytes).fault == Fault::kNone && !bytes.empty();
+}
 
 }  // namespace
 
@@ -179,7 +189,8 @@ void EncodedLines::encode_next(Lines& lines) {
       encoder_.encode(value, packet_);
       ended_ = !on_packet_(*this, packet_, place);
     } catch (const JsonError& error) {
-      complain(fmt::format("{}:{}", place, error.column()), error.what());
+      complain(fmt::format("{}:{}", place, error.column()),
+               is_hex(line) ? kHexIsNoJson : std::string_view(error.what()));
     } catch (const RecordError& error) {
       std::string what = error.what();
       if (as_message_ && what.starts_with("fields.")) what.erase(0, sizeof("fields.") - 1);

@@ -388,6 +388,10 @@ class FilterParser {
       term.operand.text = name;
       return false;
     }
+    const std::vector<std::string> bits = left.bit_names();
+    if (std::find(bits.begin(), bits.end(), name) != bits.end()) {
+      fail(fmt::format("'{0}' is a bit of {1}: '{1} & {0}' asks for it", name, left.text()));
+    }
     // A lone word beside something with named values is meant as such a name, not as a path.
     if (!names.empty() && name.find('.') == std::string::npos) {
       const std::string hint = reflect::did_you_mean(name, names);

@@ -125,6 +125,8 @@ const BadCase kBad[] = {
     {"index==1 \x01", 9, "this character means nothing here"},
     {"message<updates", 8, "names and text compare by == and != alone"},
     {"transducers & tmp", 14, "unknown bit 'tmp' (did you mean 'temp'?)"},
+    {"transducers==light", 13,
+     "'light' is a bit of transducers: 'transducers & light' asks for it"},
     {"transducers & 1.5", 14, "a mask is a whole number"},
     {"transducers & ==", 14, "expected a bit's name or a number"},
     {"seq_num & light", 10, "seq_num is not a mask, its bits have no names"},

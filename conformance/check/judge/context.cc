@@ -532,7 +532,11 @@ void Context::report(ReqId requirement, Severity severity, const Place& at, std:
   finding.place = at;
   finding.text = std::move(said.text);
   finding.expected = std::move(said.expected);
-  finding.hypotheses = std::move(said.hypotheses);
+  // Hypotheses may differ in what their sentences do not say.
+  std::vector<Hypothesis>& told = finding.hypotheses;
+  for (Hypothesis& one : said.hypotheses) {
+    if (std::find(told.begin(), told.end(), one) == told.end()) told.push_back(std::move(one));
+  }
   finding.beyond = said.beyond;
   if (node != kNobody) {
     const Device& d = device(node);

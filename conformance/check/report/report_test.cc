@@ -1,5 +1,5 @@
-// The parts of a report, on findings made by hand; tools/tests/check_test.py tests the output of
-// `rubric check` for captures.
+// The parts of a report, on findings made by hand; tools/tests/check/check_test.py tests what
+// `rubric check` prints for captures.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -28,6 +28,7 @@ constexpr std::size_t kReadBytes = 65536;
 constexpr lines::Milliseconds kDeathWait{300};  // From a closed pipe to the end of its process.
 constexpr lines::Milliseconds kTermWait{100};  // For an orderly end of what is not needed any more.
 constexpr lines::Milliseconds kPause{1};
+constexpr int kShellFindsNone = 127;
 constexpr int kShellSignals = 128;  // A shell adds this to the signal that ended its child.
 
 void ignore_broken_pipes() {
@@ -61,6 +62,9 @@ std::string status_text(int status) {
                        ::strsignal(WTERMSIG(status)));
   }
   const int code = WEXITSTATUS(status);
+  if (code == kShellFindsNone) {
+    return fmt::format("ended with status {} (as of a shell that finds no such command)", code);
+  }
   if (code <= kShellSignals || code > kShellSignals + 64) {
     return fmt::format("ended with status {}", code);
   }

@@ -48,6 +48,11 @@ std::string place_text(const Place& place) {
                      place.offset, text::harmless(place.file));
 }
 
+// Returns an empty text for frames within less than a second, which are no rate.
+std::string rate_text(const Flow& flow) {
+  return flow.seconds() < 1 ? std::string{} : fmt::format("{:.2f}", flow.rate());
+}
+
 std::string or_empty(std::uint64_t number) { return number ? std::to_string(number) : ""; }
 
 std::string flows_text(const char* heading, const Counters::Flows& flows) {
@@ -56,8 +61,7 @@ std::string flows_text(const char* heading, const Counters::Flows& flows) {
   for (std::size_t column = 1; column < 7; ++column) table.align_right(column);
   for (const auto& [name, flow] : sorted(flows)) {
     table.add({name, std::to_string(flow->frames), std::to_string(flow->bytes),
-               or_empty(flow->malformed), or_empty(flow->repeated),
-               flow->rate() > 0 ? fmt::format("{:.2f}", flow->rate()) : "",
+               or_empty(flow->malformed), or_empty(flow->repeated), rate_text(*flow),
                short_seconds(flow->gap_ns)});
   }
   return table.empty() ? std::string{} : '\n' + table.text();
@@ -160,8 +164,7 @@ std::string talkers_text(const Counters& counters) {
     const double share =
         100 * static_cast<double>(flow.frames) / static_cast<double>(counters.all().frames);
     table.add({all[i].first, std::to_string(flow.frames), fmt::format("{:.1f} %", share),
-               std::to_string(flow.bytes),
-               flow.rate() > 0 ? fmt::format("{:.2f}", flow.rate()) : ""});
+               std::to_string(flow.bytes), rate_text(flow)});
   }
   return table.empty() ? std::string{} : '\n' + table.text();
 }
@@ -228,8 +231,10 @@ std::string text_report(const Counters& counters) {
   const Flow& all = counters.all();
   std::string out =
       fmt::format("{} frames, {} bytes, {} malformed", all.frames, all.bytes, all.malformed);
-  if (all.rate() > 0) {
-    out += fmt::format(", {:.2f} frames/s over {:.3f} s", all.rate(), all.seconds());
+  if (const std::string rate = rate_text(all); !rate.empty()) {
+    out += fmt::format(", {} frames/s over {:.3f} s", rate, all.seconds());
+  } else if (all.seconds() > 0) {
+    out += fmt::format(", within {:.6f} s", all.seconds());
   }
   if (all.repeated) out += fmt::format(", {} with a repeated sequence number", all.repeated);
   if (all.backward) out += fmt::format(", {} older than the frame before", all.backward);

@@ -2,7 +2,7 @@
 """`rubric check` as its users meet it.
 
 Usage: check_test.py RUBRIC [--regenerate] in the project's folder; --regenerate writes the texts in
-tools/tests/expect/text anew instead of comparing with them.
+tools/tests/check/expect anew instead of comparing with them.
 """
 
 import json
@@ -17,7 +17,7 @@ from testing import FIRMWARE, Folder, on_terminal, rubric, some
 
 REGENERATE = "--regenerate" in sys.argv and (sys.argv.remove("--regenerate") or True)
 BASESTATION = pathlib.Path("spec/captures/basestation")
-EXPECT = pathlib.Path("tools/tests/expect")
+EXPECT = pathlib.Path("tools/tests/check/expect")
 WRONG_SEQ = FIRMWARE / "g2_stray_reply_while_joining.pcapng"
 CLEAN = FIRMWARE / "f_synaptic.pcapng"
 
@@ -54,12 +54,12 @@ def capture_files():
 class Text(Folder):
     def test_golden(self):
         for name, files in GOLDEN.items():
-            path = EXPECT / "text" / f"{name}.txt"
+            path = EXPECT / f"{name}.txt"
             out = check(*files)[1]
             if REGENERATE:
                 path.write_text(out)
             self.assertEqual(out, path.read_text(),
-                             f"{path}; renew with tools/tests/check_test.py RUBRIC --regenerate")
+                             f"{path}; renew with check_test.py RUBRIC --regenerate")
 
     def test_a_frame_has_the_number_that_decode_shows(self):
         seen = 0
@@ -442,6 +442,24 @@ class Inputs(Folder):
         found = as_json(air, given)["findings"]
         self.assertEqual([(one["requirement"], one["severity"]) for one in found],
                          [("J9-INTERLEAVE", "inconclusive")])
+
+    def test_no_explanation_comes_twice(self):
+        run = self.folder / "run.pcapng"
+        rubric("simulate", "--motes", "3", "--out-pcapng", run)
+        frames = [json.loads(line) for line in
+                  rubric("decode", run, "--format", "jsonl")[1].splitlines()]
+        for frame in [one for one in frames if one["message"] == "ack_join"][:2]:
+            frame["fields"]["seq_num"] += 1
+            del frame["raw"]
+            frame["frame"].pop("fcs", None)
+        lines = "".join(json.dumps(frame) + "\n" for frame in frames)
+        wrong = self.folder / "wrong.pcapng"
+        self.assertEqual(rubric("encode", "--format", "pcapng", "-o", wrong, stdin=lines)[0], 0)
+        found = [one for one in failures(as_json(wrong)) if one["requirement"] == "J6-SEQ"]
+        self.assertTrue(found)
+        for one in found:
+            said = [json.dumps(hypothesis) for hypothesis in one["hypotheses"]]
+            self.assertEqual(sorted(said), sorted(set(said)))
 
     def test_testers_are_not_judged(self):
         self.assertEqual(as_json(WRONG_SEQ, "--tester", "2")["counts"]["fail"], 0)

@@ -12,6 +12,7 @@ import resource
 import tempfile
 import unittest
 
+from odd_specs import FLOATING, UNPROVED
 from testing import Folder, ProgramTest, run, sanitized, some
 
 BLINK = "00 FF FF 00 00 04 22 06 00 02 00 01"
@@ -39,41 +40,6 @@ seq:
   - {id: opt, type: u2, if: flag}
   - {id: kind, type: u1, if: version == 4}
   - {id: tail, type: str, size-eos: true}
-"""
-UNPROVED = """meta: {id: unproved, endian: be}
-seq:
-  - {id: length, type: u1}
-  - {id: kind, type: u1}
-  - {id: body, size: length - 2}
-  - {id: chosen, type: {switch-on: kind, cases: {1: pair, 2: list}}}
-  - {id: lists, type: list, repeat: eos}
-instances:
-  twice: {value: length * 2}
-types:
-  pair:
-    seq: [{id: default, type: u1, enum: color}, {id: empty, type: nothing}]
-    types:
-      nothing: {}
-    enums:
-      color: {1: red}
-  list:
-    seq: [{id: count, type: u1}, {id: values, type: u2, repeat: expr, repeat-expr: count}]
-"""
-
-
-FLOATING = """meta: {id: floating, endian: be, encoding: ASCII}
-seq:
-  - {id: name, type: strz}
-  - {id: n, type: u1}
-  - {id: values, type: u2, repeat: expr, repeat-expr: n}
-  - {id: len_body, type: u2le}
-  - {id: body, size: len_body}
-  - {id: high, type: b4}
-  - {id: kind, type: b4}
-  - {id: chosen, type: {switch-on: kind, cases: {1: pair}}}
-  - {id: tail, size: high * 2 - n, if: kind != 0}
-types:
-  pair: {seq: [{id: a, type: u1}, {id: b, type: u1}]}
 """
 
 
@@ -504,7 +470,8 @@ class File(Folder):
                          f"{file}:10:15: error: unknown type 'u9'; did you mean 'u1'?\n"
                          "            type: u9\n                  ^\n")
         gone = rubric("decode", "--spec", "gone.ksy", stdin="")
-        self.assertEqual((gone.returncode, gone.stderr), (66, "gone.ksy: error: cannot be read\n"))
+        self.assertEqual((gone.returncode, gone.stderr),
+                         (66, "rubric: gone.ksy: No such file or directory\n"))
         radio = self.file("meta: {id: bad}\ntypes:\n  frame:\n    -carrier: radio_t\n"
                           "    seq: [{id: a, type: u1}]\n")
         done = rubric("decode", "--spec", radio, stdin="")

@@ -216,7 +216,7 @@ class SwappedFields(unittest.TestCase):
         module = importlib.util.module_from_spec(
             importlib.util.spec_from_file_location("wireshark_test", place))
         sys.argv.insert(1, str(self.swapped))  # As the first argument of a test of commands.
-        sys.path.insert(0, str(place.parent))
+        sys.path.insert(0, str(place.parents[1]))
         module.__spec__.loader.exec_module(module)
         suite = unittest.TestSuite(module.Dissector(name) for name in (
             "test_generated_serial_frames", "test_generated_radio_frames"))

@@ -9,7 +9,7 @@ const os = require('node:os');
 const path = require('node:path');
 const url = require('node:url');
 const { accessible, launch, open } =
-  require('../../conformance/test/report/html/tests/browser.js');
+  require('../../../conformance/test/report/html/tests/browser.js');
 
 const kCapture = 'spec/captures/firmware/h4_stale_bytes.pcapng';
 const kTelephone = { width: 390, height: 800 };

@@ -17,9 +17,9 @@ import unittest
 
 from extcap_testing import EXTCAP, FORWARDER, PACKET, SERIAL, Base, decoded, run
 from live_testing import Forwarder
+from odd_specs import FLOATING, UNPROVED
 from packets import radio
 from serial_testing import PATIENCE_S, Pty, hdlc, read_until, wait_for
-from specs_test import FLOATING, UNPROVED
 from testing import ROOT, RUBRIC
 
 KAITAI = ROOT / "spec/kaitai_check"
@@ -450,6 +450,11 @@ class Install(Base):
         self.install("--dir", self.home / "w")
         self.assertEqual(self.tree(), ["w/extcap/rubric-extcap", "w/plugins/rubric.lua"])
         self.install("--dir", "", code=64)
+        file = self.home / "w/plugins/rubric.lua"
+        for folder in (file, file / "deeper"):
+            for words in ([], ["--dry-run"]):
+                said = self.install("--dir", folder, *words, code=74)
+                self.assertIn(f"{file}: this is no folder", said)
 
     def test_files_of_others_stay(self):
         self.install("--dir", self.home)

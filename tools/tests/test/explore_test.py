@@ -2,7 +2,7 @@
 """Tests of `rubric explore` as a program: verdicts, exit codes, formats, where traces go, and the
 state diagrams against those that were read and found right.
 
-Usage: explore_test.py RUBRIC [--regenerate]: writes the diagrams of tools/tests/expect anew; read
+Usage: explore_test.py RUBRIC [--regenerate]: writes tools/tests/test/expect anew; read
 the difference.
 """
 
@@ -161,7 +161,9 @@ class Explore(Folder):
 
     def test_usage(self):
         for words, text in [(["--flaw", "no_fial"], "did you mean 'no_fail'"),
+                            (["--flaw", "foo"], "--flaw: expected one of accepts_wrong_seq, "),
                             (["--property", "one_terminl"], "did you mean 'one_terminal'"),
+                            (["--property", "foo"], "--property: expected one of "),
                             (["--flaw", "time_of_boot"], "time is abstract"),
                             (["--flaw", "misread_acks"], "--scope full"),
                             (["--profile", "papr"], "did you mean 'paper'"),

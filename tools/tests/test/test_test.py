@@ -442,7 +442,7 @@ class Failing(Folder):
         for target, why in [(self.fake("yes_man"), "an unknown command"),
                             (self.fake("liar"), "canary.mote has to fail"),
                             ("exit 3", "it does not start"),
-                            ("no_such_program_anywhere", "it does not start"),
+                            ("no_such_program_anywhere", "a shell that finds no such command"),
                             ("cat", "it does not start")]:
             code, out, _ = test("--target", target)
             self.assertEqual(code, 2, target)

@@ -25,7 +25,7 @@ TEXT = PORTING.read_text(encoding="utf-8")
 ADAPTER = ROOT / "conformance/adapters/python"
 
 
-RENEW = f"Renew with: python3 tools/tests/porting_test.py {RUBRIC} . --regenerate"
+RENEW = f"Renew with: python3 tools/tests/test/porting_test.py {RUBRIC} --regenerate"
 FENCED = re.compile(r"^```([^\n]*)\n(.*?)^```\n", re.M | re.S)
 
 
@@ -130,7 +130,7 @@ def without_times(text):
 
 
 if __name__ == "__main__":
-    if sys.argv[2:] == ["--regenerate"]:
+    if sys.argv[1:] == ["--regenerate"]:
         regenerate()
     else:
         unittest.main(argv=sys.argv[:1])

@@ -79,6 +79,7 @@ class ExitCodes(ProgramTest):
             ("decode", "--count", "0"): "--count: expected a whole number of 1 or more, given '0'",
             ("decode", ""): "FILE: is empty",
             ("decode", "--filter", "message==updats"): "did you mean 'updates'?",
+            ("decode", "--filter"): "rubric decode: --filter needs a value\n",
             ("decode", "--filter", "(index"): "expected ')'",
             ("decode", "--fields", "src.devd"): "unknown name",
             ("decode", "--spec", "rubicn"): "did you mean 'rubicon'?",

@@ -252,6 +252,8 @@ class Encode(Folder):
         self.assertEqual(first, f"rubric: {file}:3: value: expected a number from 0 to 65535, "
                                 "given 70000 (WIRE-CONFIG)")
         self.assertTrue(second.startswith(f"rubric: {file}:4:"), second)
+        err = rubric("encode", stdin="00 ffff 0000")[2]
+        self.assertIn("stdin:1:2: hex digits, no JSON; 'rubric convert' reads frames as hex", err)
 
     def test_fields_changed_beside_raw(self):
         line = json.loads(self.decoded(SERIAL).splitlines()[0])
@@ -480,6 +482,8 @@ class Explain(ProgramTest):
         code, _, err = rubric("explain", "NOPE")
         self.assertEqual(code, 64)
         self.assertTrue(err.startswith("rubric explain: nothing is called 'NOPE'"), err)
+        err = rubric("explain", "README.md")[2]
+        self.assertIn("'README.md' is a file; 'rubric decode' prints its frames", err)
 
     def test_long_lists_of_cases_are_cut(self):
         out = rubric("explain", "J1-REQUEST")[1].decode()
@@ -537,6 +541,17 @@ class Simulate(ProgramTest):
             self.refused(("simulate", "--seconds", "1", "--seed", seed),
                          f"--seed: expected a whole number of 0 or more, given '{seed}'")
         self.assertEqual(rubric("simulate", "--seconds", "1", "--seed", str(2**64 - 1))[0], 0)
+
+
+class Stats(Folder):
+    def test_a_rate_needs_a_second(self):
+        join = CAPTURES / "firmware/a_join_data.pcapng"
+        lines = rubric("decode", join, "--format", "jsonl")[1].splitlines(keepends=True)
+        for count, says in ((len(lines), "10.22 frames/s over 14.773 s"), (2, "within 0.008835 s")):
+            path = self.folder / "first.pcapng"
+            rubric("encode", "--format", "pcapng", "-o", path, stdin=b"".join(lines[:count]))
+            out = self.shows(("stats", path), f"0 malformed, {says}")
+            self.assertEqual("frames/s" in out, count > 2, out)
 
 
 class Messages(ProgramTest):
