@@ -84,7 +84,7 @@ inline bool parse_net(Bytes bytes, Net& out) {
 
 /// Returns whether addresses, reliable, number and payload are the same.
 inline bool same_message(const Net& a, const Net& b) {
-  return a.addresses() == b.addresses() && a.seq_num == b.seq_num && a.reliable == b.reliable;
+  return a.seq_num == b.seq_num && a.addresses() == b.addresses() && a.reliable == b.reliable;
 }
 /// What comes after the nbytes of a malformed message, or is missing there, means nothing.
 inline bool same_payload(const Net& a, const Net& b) {

@@ -105,7 +105,7 @@ void Forwarding::judge_order(Line& line, const Passing& passing, const Observati
                          name_of(passing.net) + " after one that came later.",
                      "Messages leave in the order in which they came.",
                      {}});
-  } else if (!passing.twin && passing.copies == 1) {
+  } else if (log && !passing.twin && passing.copies == 1) {
     context_.left(line.sink, seen.frame.link, seen.place, passing.whole_us,
                   context_.handled_us(line.sink, passing.whole_us, seen.place.time_us),
                   name_of(passing.net));

@@ -266,12 +266,13 @@ void Forwarding::unheard(Line& line, const Passing& early) {
 
 bool Forwarding::alters_up(std::uint16_t sink, const Net& net) {
   Line* const line = find(sink);
-  if (line == nullptr) return false;
+  if (line == nullptr || net.src.devid != line->am) return false;
   for (std::size_t i = 0; i < line->up.size(); ++i) {
     const Passing& passing = line->up.newest(i);
+    if (passing.net.seq_num != net.seq_num) continue;  // Of most, so this is asked first.
     const bool waits = passing.passed == 0 && passing.forbidden == ReqId::kNone;
-    if (waits && passing.net.dest == net.dest && passing.net.seq_num == net.seq_num &&
-        passing.net.src != net.src && begins_with(net, passing.net)) {
+    if (waits && passing.net.dest == net.dest && passing.net.src != net.src &&
+        begins_with(net, passing.net)) {
       return true;
     }
   }

@@ -356,16 +356,18 @@ void Originals::sent(std::uint16_t node, const Observation& seen, const Net& net
   judge_content(node, seen, net);
   const Asked asked = judge_wrap(node, seen, net, link);
   judge_address(node, seen, net, link, own);
-  judge_number(node, seen, net, asked);
+  Sent* const same = latest(node, net.seq_num);
+  if (same != nullptr) {
+    judge_number(node, seen, net, asked, *same);
+  } else {
+    context_.findings.kept("N12-REUSE"_rule);
+  }
   Sent sent;
   sent.net = net;
   sent.place = seen.place;
   sent.order = orders_[node];
   sent.called_us = seen.place.time_us;
-  for (std::size_t i = 0; i < sent_[node].size() && !sent.reused; ++i) {
-    const Sent& before = sent_[node].newest(i);
-    sent.reused = before.reused && before.net.seq_num == net.seq_num;
-  }
+  sent.reused = same != nullptr && same->reused;
   if (asked == Asked::kNo) sent.told = take_events(node, net.seq_num);
   for (std::size_t i = 0; i < calls_[node].size(); ++i) {
     const Call& call = calls_[node].newest(i);
@@ -464,69 +466,66 @@ void Originals::judge_address(std::uint16_t node, const Observation& seen, const
        {}});
 }
 
+// Returns the last message with that number; null: none is known.
+Sent* Originals::latest(std::uint16_t node, std::uint16_t number) {
+  Ring<Sent, kRoom>& ring = sent_[node];
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    if (ring.newest(i).net.seq_num == number) return &ring.newest(i);
+  }
+  return nullptr;
+}
+
 // Returns how many events the last message with that number had, for a copy that takes its place;
 // if there is none, as if it had its event, as nobody asked for it.
 std::uint8_t Originals::take_events(std::uint16_t node, std::uint16_t number) {
-  Ring<Sent, kRoom>& ring = sent_[node];
-  for (std::size_t i = 0; i < ring.size(); ++i) {
-    Sent& sent = ring.newest(i);
-    if (sent.net.seq_num == number)
-      return std::exchange(sent.told, std::max<std::uint8_t>(sent.told, 1));
-  }
-  return 1;
+  Sent* const sent = latest(node, number);
+  if (sent == nullptr) return 1;
+  return std::exchange(sent->told, std::max<std::uint8_t>(sent->told, 1));
 }
 
 void Originals::judge_number(std::uint16_t node, const Observation& seen, const Net& net,
-                             Asked asked) {
+                             Asked asked, Sent& before) {
   const std::int64_t now = seen.place.time_us;
-  Ring<Sent, kRoom>& ring = sent_[node];
-  for (std::size_t i = 0; i < ring.size(); ++i) {
-    Sent& before = ring.newest(i);
-    if (before.net.seq_num != net.seq_num) continue;
-    const bool awaits =
-        before.net.reliable == 1 && before.wait != Wait::kOver && before.net.sound &&
-        before.net.trans_id == component::kConnless && seen.place.timed() && before.place.timed() &&
-        now - before.place.time_us < context_.ack_timeout_us(node) - context_.early_us(node);
-    const bool same =
-        asked != Asked::kYes && same_message(before.net, net) && same_payload(before.net, net);
-    // A sink's host may have handed it down again.
-    const std::int64_t since_us = before.place.time_us;
-    if (awaits) {
-      before.reused = !same;
-      // An ack that nobody captured would have ended the wait.
-      const machine::Address dest = before.net.dest;
-      const bool by_sink = dest.devid == context_.sink_am || dest.devid == machine::kNullDevid;
-      const std::uint16_t acker =
-          by_sink || before.acked ? context_.only_sink : context_.mote_of_am[dest.devid];
-      const Severity severity = before.wait == Wait::kPerhaps
-                                    ? Severity::kInconclusive
-                                    : context_.without(acker, before.place.time_us, now);
-      context_.report(
-          same ? "T3-RESEND"_rule : "N12-REUSE"_rule,
-          same ? context_.unless_given(node, since_us, severity) : context_.on_line(node, severity),
-          seen.place, node,
-          {(same ? "The reliable message with number " : "Number ") + number(net.seq_num) +
-               (same ? " is sent" : " is used") + " again, " + ms_text(now - before.place.time_us) +
-               " after the message with this number that awaits its ack.",
-           same ? "Resending is the application's decision, with a number of its own."
-                : "A number that no message awaits.",
-           {}});
-      return;
-    }
-    // Twice in a row, at once: a number that came again by chance would not do that.
-    const bool at_once = same && i == 0 && before.order + 1 == orders_[node] &&
-                         seen.place.timed() && before.place.timed() &&
-                         now - before.place.time_us < kAtOnceUs;
-    if (at_once) {
-      context_.report("N2-ONCE"_rule, context_.unless_given(node, since_us), seen.place, node,
-                      {"The same message, number " + number(net.seq_num) + ", is sent twice, " +
-                           ms_text(now - before.place.time_us) + " apart.",
-                       "Once.",
-                       {}});
-    }
+  const bool awaits =
+      before.net.reliable == 1 && before.wait != Wait::kOver && before.net.sound &&
+      before.net.trans_id == component::kConnless && seen.place.timed() && before.place.timed() &&
+      now - before.place.time_us < context_.ack_timeout_us(node) - context_.early_us(node);
+  const bool same =
+      asked != Asked::kYes && same_message(before.net, net) && same_payload(before.net, net);
+  // A sink's host may have handed it down again.
+  const std::int64_t since_us = before.place.time_us;
+  if (awaits) {
+    before.reused |= !same;
+    // An ack that nobody captured would have ended the wait.
+    const machine::Address dest = before.net.dest;
+    const bool by_sink = dest.devid == context_.sink_am || dest.devid == machine::kNullDevid;
+    const std::uint16_t acker =
+        by_sink || before.acked ? context_.only_sink : context_.mote_of_am[dest.devid];
+    const Severity severity = before.wait == Wait::kPerhaps
+                                  ? Severity::kInconclusive
+                                  : context_.without(acker, before.place.time_us, now);
+    context_.report(
+        same ? "T3-RESEND"_rule : "N12-REUSE"_rule,
+        same ? context_.unless_given(node, since_us, severity) : context_.on_line(node, severity),
+        seen.place, node,
+        {(same ? "The reliable message with number " : "Number ") + number(net.seq_num) +
+             (same ? " is sent" : " is used") + " again, " + ms_text(now - before.place.time_us) +
+             " after the message with this number that awaits its ack.",
+         same ? "Resending is the application's decision, with a number of its own."
+              : "A number that no message awaits.",
+         {}});
     return;
   }
-  context_.findings.kept("N12-REUSE"_rule);
+  // Twice in a row, at once: a number that came again by chance would not do that.
+  const bool at_once = same && before.order + 1 == orders_[node] && seen.place.timed() &&
+                       before.place.timed() && now - before.place.time_us < kAtOnceUs;
+  if (at_once) {
+    context_.report("N2-ONCE"_rule, context_.unless_given(node, since_us), seen.place, node,
+                    {"The same message, number " + number(net.seq_num) + ", is sent twice, " +
+                         ms_text(now - before.place.time_us) + " apart.",
+                     "Once.",
+                     {}});
+  }
 }
 
 void Originals::finish(const InterfaceWatch& interfaces) {

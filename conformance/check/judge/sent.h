@@ -112,12 +112,14 @@ class Originals {
   /// Whether a call of its application asked for a message.
   enum class Asked : std::uint8_t { kUnknown, kYes, kNo };
   Asked judge_wrap(std::uint16_t node, const Observation& seen, const Net& net, machine::Link link);
+  Sent* latest(std::uint16_t node, std::uint16_t number);
   std::uint8_t take_events(std::uint16_t node, std::uint16_t number);
   template <typename Fits>
   bool heard_ack(std::uint16_t node, std::uint16_t number, Fits fits) const;
   bool rightly_acked(std::uint16_t node, const Net& message) const;
   bool ill_acked(std::uint16_t node, const Net& message) const;
-  void judge_number(std::uint16_t node, const Observation& seen, const Net& net, Asked asked);
+  void judge_number(std::uint16_t node, const Observation& seen, const Net& net, Asked asked,
+                    Sent& before);
 
   Context& context_;
   std::vector<Ring<Sent, kRoom>> sent_;
