@@ -89,7 +89,7 @@ class Decoder {
     // A node is a structure or takes at least a byte, and structures nest less than kMaxPath deep.
     const std::size_t need = 2 * out_.bytes.size() + 64 * Decoded::kMaxPath;
     if (out_.capacity_ < need) {
-      out_.nodes_ = std::make_unique<Node[]>(need);
+      out_.nodes_ = std::make_unique_for_overwrite<Node[]>(need);
       out_.capacity_ = need;
     }
     nodes_ = out_.nodes_.get();
@@ -135,7 +135,7 @@ class Decoder {
     return node;
   }
   __attribute__((noinline)) void grow() {
-    auto larger = std::make_unique<Node[]>(2 * out_.capacity_);
+    auto larger = std::make_unique_for_overwrite<Node[]>(2 * out_.capacity_);
     std::copy_n(nodes_, count_, larger.get());
     out_.nodes_ = std::move(larger);
     out_.capacity_ *= 2;

@@ -178,6 +178,8 @@ bool decode_as(const reflect::Type& type, const AmFrame& frame, Concrete& out) {
     out.excess = bytes.size() - type.max_size;
     out.size_rule = type.requirement;
   }
+  out.leaves.reserve(decoded.node_count());
+  out.message.fields.reserve(decoded.node_count());
   Flatten(decoded, out).run();
   return true;
 }

@@ -239,8 +239,6 @@ void parse_bytes(Scanner& in, Line& line) {
   if (line.bytes->empty()) in.fail_at(text, "expected bytes in hex after '|'");
 }
 
-// Reads nothing, or `; text`.
-
 }  // namespace
 
 std::string_view trimmed(std::string_view text) {

@@ -305,7 +305,7 @@ struct Comment {
 template <class T>
 class Shared {
  public:
-  explicit Shared(T value) : value_(std::make_shared<T>(std::move(value))) {}
+  explicit Shared(T&& value) : value_(std::make_shared<T>(std::move(value))) {}
   const T& get() const { return *value_; }
   /// Returns one that no copy shares.
   T& own() {
@@ -324,8 +324,8 @@ class Item {
  public:
   Item(Blank what) : what_(what) {}
   Item(Comment what) : what_(std::move(what)) {}
-  Item(Header what) : what_(Shared(std::move(what))) {}
-  Item(Line what) : what_(Shared(std::move(what))) {}
+  Item(Header&& what) : what_(Shared(std::move(what))) {}
+  Item(Line&& what) : what_(Shared(std::move(what))) {}
   friend bool operator==(const Item&, const Item&) = default;
 
   /// Returns it as the kind T; null if it is another.
