@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace rubric::check {
@@ -26,6 +27,15 @@ class Ring {
   const T& newest(std::size_t i) const { return items_[wrapped(next_ - 1 - i)]; }
   /// Returns the i-th oldest; i < size().
   T& oldest(std::size_t i) { return newest(count_ - 1 - i); }
+  /// Returns how many of the newest have another key, if all were pushed with one.
+  std::size_t newer_than(std::uint16_t key) const {
+    return count_ == 0 ? 0 : std::min(count_, pushed_ - last_[key % kKeys]);
+  }
+  T& push(const T& item, std::uint16_t key) {
+    if (last_.empty()) last_.resize(kKeys);
+    last_[key % kKeys] = ++pushed_;
+    return push(item);
+  }
   T& push(const T& item) {
     if (items_.empty()) items_.resize(kRoom);
     T& place = items_[next_];
@@ -54,6 +64,7 @@ class Ring {
   }
 
  private:
+  static constexpr std::size_t kKeys = 512;
   std::size_t wrapped(std::size_t i) const { return i & (items_.size() - 1); }
   void grow() {
     std::rotate(items_.begin(), items_.begin() + static_cast<std::ptrdiff_t>(next_), items_.end());
@@ -64,6 +75,8 @@ class Ring {
   std::vector<T> items_;
   std::size_t next_ = 0;
   std::size_t count_ = 0;
+  std::size_t pushed_ = 0;         // With a key.
+  std::vector<std::size_t> last_;  // What pushed_ was after the last with a key like this.
 };
 
 }  // namespace rubric::check

@@ -114,10 +114,11 @@ void Forwarding::store(Way& way, const Passing& passing) {
     --way.owed;
     ++way.forgotten;
   }
-  Passing& stored = way.push(passing);
+  const std::size_t newer = way.newer_than(passing.net.seq_num);
+  Passing& stored = way.push(passing, passing.net.seq_num);
   stored.last_us = passing.place.time_us;
   if (passing.owed) ++way.owed;
-  for (std::size_t i = 1; i < std::min(way.size(), kTwinsLook); ++i) {
+  for (std::size_t i = newer + 1; i < std::min(way.size(), kTwinsLook); ++i) {
     Passing& other = way.newest(i);
     if (!same_message(other.net, stored.net)) continue;
     other.twin = stored.twin = true;

@@ -379,7 +379,7 @@ void Originals::sent(std::uint16_t node, const Observation& seen, const Net& net
   Ring<Sent, kRoom>& ring = sent_[node];
   ring.make_room([&](const Sent& before) { return awaits(node, before, seen.place.time_us); },
                  [&](const Sent&) { close(node, ring.size() - 1, seen.place.time_us); });
-  ring.push(sent);
+  ring.push(sent, net.seq_num);
 }
 
 void Originals::judge_content(std::uint16_t node, const Observation& seen, const Net& net) {
@@ -469,7 +469,7 @@ void Originals::judge_address(std::uint16_t node, const Observation& seen, const
 // Returns the last message with that number; null: none is known.
 Sent* Originals::latest(std::uint16_t node, std::uint16_t number) {
   Ring<Sent, kRoom>& ring = sent_[node];
-  for (std::size_t i = 0; i < ring.size(); ++i) {
+  for (std::size_t i = ring.newer_than(number); i < ring.size(); ++i) {
     if (ring.newest(i).net.seq_num == number) return &ring.newest(i);
   }
   return nullptr;
