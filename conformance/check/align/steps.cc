@@ -6,6 +6,7 @@
 #include <set>
 #include <string>
 #include <tuple>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -43,6 +44,13 @@ std::string seconds(std::int64_t us) {
 // An exchange of frames: what kind, between whom, with which number.
 enum class Hop : std::uint8_t { kReply, kAckJoin, kRepeat, kReport, kUp, kDown, kAck };
 using Exchange = std::tuple<Hop, std::uint64_t, std::uint16_t>;
+struct HashOfExchange {
+  std::size_t operator()(const Exchange& of) const {
+    const auto& [hop, addresses, number] = of;
+    return (addresses ^ (std::uint64_t{number} << 3 | static_cast<std::uint64_t>(hop)) << 24) *
+           0x9e3779b97f4a7c15;
+  }
+};
 
 std::uint64_t addresses_of(machine::Address src, machine::Address dest) {
   return std::uint64_t{dest.pid} << 48 | std::uint64_t{dest.devid} << 32 |
@@ -218,7 +226,7 @@ class Recorded {
 
   // Returns these silences, by the frame after each, where nodes take `usual_us` to react.
   std::set<std::size_t> silences_beyond(std::int64_t usual_us) const {
-    std::map<Exchange, std::size_t> causes;
+    std::unordered_map<Exchange, std::size_t, HashOfExchange> causes;
     std::set<std::size_t> silences;
     std::vector<Exchange> ends;
     std::vector<Exchange> begins;
