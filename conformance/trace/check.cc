@@ -162,6 +162,7 @@ class MessageCheck {
       return;
     }
     std::vector<FieldValue> whole;
+    whole.reserve(message.fields.size());
     std::size_t position = 0;
     for (const FieldValue& one : message.fields) {
       try {
@@ -271,8 +272,7 @@ class MessageCheck {
     }
     Bindings bindings;
     // A variable's value is known only when the case runs.
-    Line line = line_;
-    line.bytes.reset();
+    Line line{.op = line_.op, .am = line_.am, .message = line_.message};
     const auto soften = [](Value& value) {
       const bool range = value.is(Value::Kind::kRange) && !value.text.empty();
       if (range || value.is(Value::Kind::kVariable)) value = Value::any();

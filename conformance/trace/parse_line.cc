@@ -180,6 +180,7 @@ void parse_fields(Scanner& in, Message& message) {
   message.form = Message::Form::kFields;
   const Place open = in.place();
   in.advance(1);
+  message.fields.reserve(static_cast<std::size_t>(std::ranges::count(in.rest(), '=')));
   while (true) {
     in.skip_blanks();
     if (in.at_end()) throw LineError{open, "'(' without its ')'"};
