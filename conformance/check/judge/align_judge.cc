@@ -192,6 +192,34 @@ Report judge_each_gap(const Run& run, const Options& options) {
   return report;
 }
 
+// Judges a run of one clock. Where its frames show that stamps of the air or of lines are late, a
+// failure must be found, too, with those of the other so much later.
+Report judge_each_skew(const Run& run, const Options& options) {
+  Judge straight(run, options);
+  Report report = straight.judge();
+  if (std::ranges::none_of(report.findings, blames)) return report;
+  const auto stands_with = [&](machine::Link late, std::int64_t by_us) {
+    if (by_us == 0) return;
+    Run now = run;
+    for (Observation& seen : now.seen) {
+      const bool moves = seen.node.empty() && run.taps[seen.tap].link != late;
+      if (moves && seen.place.timed()) seen.place.time_us += by_us + 1;
+    }
+    merge(now);
+    now.has_time = run.has_time;
+    now.start_us = run.start_us;
+    const std::set<Name> blamed = blamed_in(Judge(now, options).judge());
+    for (Finding& finding : report.findings) {
+      const bool stands = blamed.contains(name_of(finding));
+      if (blames(finding) && !stands) finding.severity = Severity::kInconclusive;
+    }
+  };
+  stands_with(machine::Link::kRadio, straight.taps_cross().air_us);
+  stands_with(machine::Link::kSerial, straight.taps_cross().line_us);
+  report.verdict = verdict_of(report.findings);
+  return report;
+}
+
 // Moves the whole run to later times.
 void move_all(Run& run, std::int64_t by_us) {
   const auto move = [by_us](std::int64_t time_us) { return time_us + by_us; };
@@ -355,7 +383,7 @@ Report judge(const Run& run, const Options& options) {
   }
   if (!run.logs.empty()) return judge_each_log(run, options);
   if (!run.loose.empty() || !run.slack_taps.empty()) return judge_each_order(run, options);
-  return run.steps.empty() ? Judge(run, options).judge() : judge_each_gap(run, options);
+  return run.steps.empty() ? judge_each_skew(run, options) : judge_each_gap(run, options);
 }
 
 }  // namespace rubric::check
