@@ -127,48 +127,6 @@ const TapsCross& Context::taps_cross() const {
   return *taps_cross_;
 }
 
-TapsCross Context::find_taps_cross() const {
-  using Key = std::pair<machine::Address, std::uint16_t>;  // Source and number.
-  TapsCross out;
-  std::map<Key, std::int64_t> up;     // When each was passed on.
-  std::map<Key, std::int64_t> ahead;  // When a sink radiated what nobody had sent.
-  std::set<Key> sent;                 // By its mote, or down a line.
-  const Observation* last = nullptr;  // Frame on the air.
-  for (std::size_t i = run.past.senders.size(); i < run.seen.size(); ++i) {
-    const Observation& seen = run.seen[i];
-    if (!seen.node.empty() || !seen.place.timed()) continue;
-    const auto late = [&](std::int64_t& most_us, std::int64_t due_us) {
-      const std::int64_t late_us = seen.place.time_us - due_us;
-      if (late_us <= options.skew_us) most_us = std::max(most_us, late_us);
-    };
-    const bool radio = seen.kind == Observation::Kind::kRadio;
-    // An acknowledgement that comes late has a late stamp.
-    const bool link_ack = seen.kind == Observation::Kind::kLinkAck && last != nullptr &&
-                          last->tap == seen.tap && last->has_dsn && last->dsn == seen.dsn;
-    if (link_ack) late(out.air_us, last->place.time_us + ack_within_us(*last));
-    if (radio) last = &seen;
-    Net net;
-    if (!radio && seen.kind != Observation::Kind::kSerial) continue;
-    if (seen.frame.type != am::kNet || !parse_net(seen.frame.payload, net)) continue;
-    const Key key(net.src, net.seq_num);
-    const bool fresh = !sent.contains(key);
-    const bool by_mote = radio && seen.frame.src == net.src.devid && net.src.devid != sink_am;
-    const auto before = up.find(key);
-    if (!radio && !seen.to_mote) {
-      up.try_emplace(key, seen.place.time_us);
-    } else if (by_mote && fresh && before != up.end()) {
-      late(out.air_us, before->second);
-    } else if (radio && seen.frame.src == sink_am && net.src.devid != sink_am && fresh) {
-      if (before == up.end()) ahead.try_emplace(key, seen.place.time_us);
-    } else if (!radio && fresh && before == up.end()) {
-      const auto radiated = ahead.find(key);
-      if (radiated != ahead.end()) late(out.line_us, radiated->second);
-    }
-    if (by_mote || (!radio && seen.to_mote)) sent.insert(key);
-  }
-  return out;
-}
-
 void Context::find_restarts() {
   struct Heard {
     std::map<std::uint16_t, std::pair<std::uint8_t, std::int64_t>> last;  // By device: DSN, time.

@@ -489,13 +489,8 @@ void Originals::judge_number(std::uint16_t node, const Observation& seen, const 
         now - before.place.time_us < context_.ack_timeout_us(node) - context_.early_us(node);
     const bool same =
         asked != Asked::kYes && same_message(before.net, net) && same_payload(before.net, net);
-    // A sink's host may have handed it down again, by another clock soon.
+    // A sink's host may have handed it down again.
     const std::int64_t since_us = before.place.time_us;
-    const auto given_again = [&](Severity severity) {
-      const bool comes = context_.comes(node, seen, net.src, net.seq_num);
-      const Severity most = comes ? Severity::kInconclusive : severity;
-      return context_.unless_given(node, since_us, std::min(severity, most));
-    };
     if (awaits) {
       before.reused = !same;
       // An ack that nobody captured would have ended the wait.
@@ -508,7 +503,8 @@ void Originals::judge_number(std::uint16_t node, const Observation& seen, const 
                                     : context_.without(acker, before.place.time_us, now);
       context_.report(
           same ? "T3-RESEND"_rule : "N12-REUSE"_rule,
-          same ? given_again(severity) : context_.on_line(node, severity), seen.place, node,
+          same ? context_.unless_given(node, since_us, severity) : context_.on_line(node, severity),
+          seen.place, node,
           {(same ? "The reliable message with number " : "Number ") + number(net.seq_num) +
                (same ? " is sent" : " is used") + " again, " + ms_text(now - before.place.time_us) +
                " after the message with this number that awaits its ack.",
@@ -522,7 +518,7 @@ void Originals::judge_number(std::uint16_t node, const Observation& seen, const 
                          seen.place.timed() && before.place.timed() &&
                          now - before.place.time_us < kAtOnceUs;
     if (at_once) {
-      context_.report("N2-ONCE"_rule, given_again(Severity::kFail), seen.place, node,
+      context_.report("N2-ONCE"_rule, context_.unless_given(node, since_us), seen.place, node,
                       {"The same message, number " + number(net.seq_num) + ", is sent twice, " +
                            ms_text(now - before.place.time_us) + " apart.",
                        "Once.",
