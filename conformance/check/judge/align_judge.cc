@@ -197,17 +197,16 @@ Report judge_each_gap(const Run& run, const Options& options) {
 }
 
 // Judges a run of one clock. Where its frames show that stamps of the air or of lines are late, a
-// failure must be found, too, with those of the other so much later.
+// failure must be found, too, with those of the other so much later; and where files do not have
+// their frames in the order of the stamps, in this order as well.
 Report judge_each_skew(const Run& run, const Options& options) {
   Judge straight(run, options);
   Report report = run.steps.empty() ? straight.judge() : judge_each_gap(run, options);
   if (std::ranges::none_of(report.findings, blames)) return report;
-  const auto stands_with = [&](machine::Link late, std::int64_t by_us) {
-    if (by_us == 0) return;
+  const auto stands_with = [&](const auto& later_us) {
     Run now = run;
     for (Observation& seen : now.seen) {
-      const bool moves = seen.node.empty() && run.taps[seen.tap].link != late;
-      if (moves && seen.place.timed()) seen.place.time_us += by_us + 1;
+      if (seen.node.empty() && seen.place.timed()) seen.place.time_us += later_us(seen);
     }
     merge(now);
     now.has_time = run.has_time;
@@ -218,8 +217,19 @@ Report judge_each_skew(const Run& run, const Options& options) {
       if (blames(finding) && !stands) finding.severity = Severity::kInconclusive;
     }
   };
-  stands_with(machine::Link::kRadio, straight.taps_cross().air_us);
-  stands_with(machine::Link::kSerial, straight.taps_cross().line_us);
+  const auto moved = [&](machine::Link link, std::int64_t by_us) {
+    if (by_us == 0) return;
+    stands_with(
+        [&](const Observation& seen) { return run.taps[seen.tap].link == link ? by_us + 1 : 0; });
+  };
+  moved(machine::Link::kSerial, straight.taps_cross().air_us);
+  moved(machine::Link::kRadio, straight.taps_cross().line_us);
+  if (!run.turned.empty()) {
+    stands_with([&](const Observation& seen) {
+      const auto turned = run.turned.find({seen.place.file, seen.place.frame});
+      return turned != run.turned.end() ? -std::min(turned->second, seen.place.time_us) : 0;
+    });
+  }
   report.verdict = verdict_of(report.findings);
   return report;
 }
