@@ -224,10 +224,12 @@ Report judge_each_skew(const Run& run, const Options& options) {
   };
   moved(machine::Link::kSerial, straight.taps_cross().air_us);
   moved(machine::Link::kRadio, straight.taps_cross().line_us);
-  if (!run.turned.empty()) {
+  std::int64_t most_us = 0;  // All others are later by this: the first frame may be turned.
+  for (const auto& [frame, by_us] : run.turned) most_us = std::max(most_us, by_us);
+  if (most_us > 0) {
     stands_with([&](const Observation& seen) {
       const auto turned = run.turned.find({seen.place.file, seen.place.frame});
-      return turned != run.turned.end() ? -std::min(turned->second, seen.place.time_us) : 0;
+      return turned == run.turned.end() ? most_us : most_us - turned->second;
     });
   }
   report.verdict = verdict_of(report.findings);

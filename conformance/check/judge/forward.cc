@@ -369,10 +369,12 @@ void Forwarding::overdue_down(Line& line, std::int64_t now_us, Severity most) {
       return &other != &line && holds(other.down, passing.net, false);  // It may have radiated it.
     });
     const bool open = !passing.sure || elsewhere || crowded(line, passing, Link::kRadio);
-    const Severity severity =
-        open ? Severity::kInconclusive : context_.without(line.sink, passing.place.time_us, now_us);
-    const Severity its = std::min(most, context_.on_line(line.sink, severity));
+    // By another clock it may have been radiated before it came.
     const bool log = context_.device(line.sink).hearing;
+    const std::int64_t since_us = passing.place.time_us - (log ? 0 : context_.options.skew_us);
+    const Severity severity =
+        open ? Severity::kInconclusive : context_.without(line.sink, since_us, now_us);
+    const Severity its = std::min(most, context_.on_line(line.sink, severity));
     const std::string proof = log            ? "The sink was given "
                               : passing.sure ? "The sink confirmed "
                                              : "Nothing proves that the sink took ";
