@@ -368,10 +368,13 @@ void Forwarding::overdue_down(Line& line, std::int64_t now_us, Severity most) {
     const bool elsewhere = std::ranges::any_of(lines_, [&](const Line& other) {
       return &other != &line && holds(other.down, passing.net, false);  // It may have radiated it.
     });
-    const bool open = !passing.sure || elsewhere || crowded(line, passing, Link::kRadio);
-    // By another clock it may have been radiated before it came.
+    // By another clock it may have been radiated before it came, or taken for a stray sender's.
     const bool log = context_.device(line.sink).hearing;
     const std::int64_t since_us = passing.place.time_us - (log ? 0 : context_.options.skew_us);
+    const bool stray = !log && std::ranges::any_of(context_.who.devices, [&](const Device& d) {
+      return !d.known && d.am == line.am && d.first_us <= now_us && d.last_us >= since_us;
+    });
+    const bool open = !passing.sure || elsewhere || stray || crowded(line, passing, Link::kRadio);
     const Severity severity =
         open ? Severity::kInconclusive : context_.without(line.sink, since_us, now_us);
     const Severity its = std::min(most, context_.on_line(line.sink, severity));
