@@ -98,6 +98,13 @@ struct Context {
     return node < logged_.size() ? logged_[node] : unlogged_;  // A log's are the first devices.
   }
   const machine::Profile& profile(std::uint16_t node) const { return terms(node).profile; }
+  /// Returns whether a sender that is none of the sinks has their address, and sends until a time
+  /// after the first one and from before the second one on.
+  bool stray_sink(std::int64_t from_us = 0, std::int64_t to_us = INT64_MAX) const {
+    return std::ranges::any_of(who.devices, [&](const Device& d) {
+      return !d.known && d.radio && d.am == sink_am && d.first_us <= to_us && d.last_us >= from_us;
+    });
+  }
   /// Returns how many messages a buffer for this line holds at least (decision 122).
   std::size_t room(std::uint16_t node, machine::Link line) const {
     return std::min(line == machine::Link::kRadio ? machine::kRadioRoom : machine::kSerialRoom,

@@ -238,10 +238,11 @@ bool Forwarding::relayed(Line& line, const Observation& seen, const Net& net) {
   if (heard->relayed < 255) ++heard->relayed;
   const bool all = net.dest.pid == machine::kBroadcastPid && net.sound && heard->passed == 0;
   if (right || (all && !again)) return true;
-  // All sinks have one AM address, so another sink, of which no frame was found, may have sent it.
+  // All sinks have one AM address, so another sink, of which no frame was found, or some that were
+  // taken for a stray sender's, may have sent it.
   const bool anothers = std::ranges::any_of(lines_, [&](const Line& other) {
-    return other.sink != line.sink && !context_.device(other.sink).radio &&
-           other.island == net.dest.pid;
+    const bool unfound = !context_.device(other.sink).radio || context_.stray_sink();
+    return other.sink != line.sink && unfound && other.island == net.dest.pid;
   });
   const bool open = anothers || line.changing(seen.place.time_us);
   const Severity severity = forbidden && heard->weak ? Severity::kWeak : Severity::kFail;
@@ -371,9 +372,7 @@ void Forwarding::overdue_down(Line& line, std::int64_t now_us, Severity most) {
     // By another clock it may have been radiated before it came, or taken for a stray sender's.
     const bool log = context_.device(line.sink).hearing;
     const std::int64_t since_us = passing.place.time_us - (log ? 0 : context_.options.skew_us);
-    const bool stray = !log && std::ranges::any_of(context_.who.devices, [&](const Device& d) {
-      return !d.known && d.am == line.am && d.first_us <= now_us && d.last_us >= since_us;
-    });
+    const bool stray = !log && context_.stray_sink(since_us, now_us);
     const bool open = !passing.sure || elsewhere || stray || crowded(line, passing, Link::kRadio);
     const Severity severity =
         open ? Severity::kInconclusive : context_.without(line.sink, since_us, now_us);

@@ -78,6 +78,12 @@ void radio_alone(Traffic& traffic, Random&) {
                 [](const LawfulPacket& packet) { return packet.interface != "radio"; });
 }
 
+void begins_late(Traffic& traffic, Random& random) {
+  const auto begin = traffic.packets.begin();
+  traffic.packets.erase(
+      begin, begin + static_cast<std::ptrdiff_t>(random.below(traffic.packets.size() / 2 + 1)));
+  traffic.cold_start = false;
+}
 void coarse_stamps(Traffic& traffic, Random&) {
   for (LawfulPacket& packet : traffic.packets) packet.time_us -= packet.time_us % kCoarseUs;
 }
@@ -116,6 +122,7 @@ constexpr Recorder kRecorders[] = {
     {"drops_few", "a twentieth is missing", drops_few},
     {"drops_and_steps", "a fifth is missing, and the clock steps four times", drops_and_steps},
     {"radio_alone", "what is on the air alone", radio_alone},
+    {"begins_late", "up to half of the packets are over when it begins", begins_late},
     {"coarse_stamps", "stamps are whole steps of 50 ms apart", coarse_stamps},
     {"late_lines", "what is on lines comes 20 to 25 ms late", late_lines},
     {"turns", "a twentieth of close neighbours on the air is written in the other order", turns},
