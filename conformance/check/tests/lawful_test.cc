@@ -142,6 +142,19 @@ TEST(Lawful, NoAlarmComesBack) {
   EXPECT_EQ(count.known, 0U);
 }
 
+TEST(Lawful, ACoarseClockIsSeenAndSaid) {
+  for (const bool coarse : {true, false}) {
+    lawful::Traffic traffic = lawful::generate("home", 1);
+    lawful::record(traffic, coarse ? "coarse_stamps" : "exact", 1);
+    const check::Run run = must_read("home", lawful::to_pcapng(traffic));
+    EXPECT_EQ(run.grid_us, coarse ? 50'000 : 0);
+    const auto says = [](const std::string& fact) {
+      return fact.starts_with("stamps are whole steps of 50000 us apart");
+    };
+    EXPECT_EQ(std::ranges::any_of(run.facts, says), coarse);
+  }
+}
+
 // Traffic that is lawful only by what its nodes state fails when they state nothing.
 TEST(Lawful, UnstatedItFails) {
   for (const char* name : {"stated_join_timer", "stated_requests", "stated_busy_channel"}) {
