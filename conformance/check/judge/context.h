@@ -308,6 +308,7 @@ struct Context {
     return node < logs_us_.size() && captured_ && !device(node).hearing;
   }
   void find_restarts();
+  void doubt_lone_replies();
   TapsCross find_taps_cross() const;
   mutable std::optional<TapsCross> taps_cross_;  // Found when it is asked for.
   int backlog_of(std::uint16_t node, std::size_t index) const;
