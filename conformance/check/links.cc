@@ -3,7 +3,6 @@
 namespace rubric::check {
 namespace {
 
-constexpr std::int64_t kAckWithinUs = 2500;
 constexpr std::int64_t kSerialAckWithinUs = 100'000;
 
 }  // namespace
@@ -11,8 +10,7 @@ constexpr std::int64_t kSerialAckWithinUs = 100'000;
 bool link_acked(const Run& run, std::uint32_t index) {
   const Observation& sent = run.seen[index];
   if (!sent.ack_request || !sent.has_dsn || sent.kind != Observation::Kind::kRadio) return false;
-  const auto bytes = static_cast<std::int64_t>(sent.frame.payload.size()) + kAroundBytes;
-  const std::int64_t last = sent.place.time_us + bytes * kRadioByteUs + kAckWithinUs;
+  const std::int64_t last = sent.place.time_us + ack_within_us(sent) + run.grid_us;
   for (std::size_t i = index + 1; i < run.seen.size(); ++i) {
     const Observation& seen = run.seen[i];
     if (seen.place.time_us > last) return false;

@@ -24,6 +24,9 @@ inline std::int64_t air_us(const Observation& seen) {
   return (static_cast<std::int64_t>(seen.frame.payload.size()) + kAroundBytes) * kRadioByteUs;
 }
 
+/// Returns how long after its time a captured radio frame is acknowledged at the latest.
+inline std::int64_t ack_within_us(const Observation& sent) { return air_us(sent) + 2500; }
+
 /// Returns whether the 802.15.4 acknowledgement of radio frame `index`, by its DSN, came 0 to 2.5
 /// ms after its end. It proves that *some* node of that address received it; its absence proves
 /// nothing.

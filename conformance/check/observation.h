@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -227,6 +228,12 @@ struct Run {
   /// By tap: its clock is not known to be that of the air, so nothing fails that depends on the
   /// order between the two. Empty if there is no such tap.
   std::vector<bool> unordered_taps;
+  /// How far apart stamps are at least, where a tap shows such a grid: what passed between two
+  /// frames of it may be so much more or less than their times say.
+  std::int64_t grid_us = 0;
+  /// By file and frame: how much earlier the stamps of frames are than where their files have them.
+  /// A failure must be found in the order of the stamps, too.
+  std::map<std::pair<std::uint32_t, std::uint64_t>, std::int64_t> turned;
   /// Lines on clocks of their own were put on that of the air, as early as they can be; they may be
   /// later by this. A failure must be found wherever in that time they are.
   std::int64_t slack_us = 0;

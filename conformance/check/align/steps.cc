@@ -365,8 +365,9 @@ class Recorded {
     std::vector<std::int64_t> last(run_.taps.size(), kNoStamp);
     for (const std::uint32_t i : frames_) {
       std::int64_t& latest = last[in_order_ ? 0 : run_.seen[i].tap];
-      std::int64_t& time_us = run_.seen[i].place.time_us;
-      time_us = latest = std::max(latest, time_us);
+      Place& place = run_.seen[i].place;
+      if (place.time_us < latest) run_.turned[{place.file, place.frame}] = latest - place.time_us;
+      place.time_us = latest = std::max(latest, place.time_us);
     }
   }
 

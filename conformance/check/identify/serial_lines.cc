@@ -9,8 +9,9 @@
 namespace rubric::check {
 namespace {
 
-constexpr std::int64_t kSerialRepeatUs = 1'500'000;  // TinyOS hosts wait 1000 ms.
-constexpr std::int64_t kFrameOnLineUs = 100'000;     // A report that waited for the line.
+// TinyOS hosts wait 1000 ms (ACK_TIMEOUT of Packetizer.java and serialsource.c); nobody states it.
+constexpr std::int64_t kSerialRepeatUs = 1'500'000;
+constexpr std::int64_t kFrameOnLineUs = 100'000;  // A report that waited for the line.
 constexpr std::size_t kShownMax = 256;
 
 // Returns the island that a report or the source of a passing message shows, never its destination

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <system_error>
 
 #include "codec/text/files.h"
@@ -179,24 +180,30 @@ void leave_out_networks(Run& run) {
 }
 
 // Takes the stamps of a capture that only tell the second, or its tenth, for none: most frames
-// share theirs with the one before, and what lies between two is not known.
+// share theirs with the one before, and what lies between two is not known. Of finer ones that
+// show a grid, as frames share them and all of them are whole steps apart, notes how wide it is.
 void leave_out_coarse_stamps(Run& run) {
   constexpr std::int64_t kCoarseUs = 100'000;
+  constexpr std::int64_t kFineUs = 1'000;  // A finer grid is within what timers may be off.
+  constexpr std::size_t kManyStamps = 8;   // Fewer may be whole steps apart by chance.
   struct Stamps {
     std::int64_t last_us = kNoStamp;
+    std::int64_t grid_us = 0;
     std::size_t frames = 0;
     std::size_t same = 0;
     bool coarse = true;
   };
   std::vector<Stamps> files(run.files.size());
+  std::vector<Stamps> taps(run.taps.size());
   for (const Observation& seen : run.seen) {
-    Stamps& file = files[seen.place.file];
     const std::int64_t time_us = seen.place.time_us;
     if (!seen.node.empty() || time_us == kNoStamp) continue;
-    file.coarse = file.coarse && time_us % kCoarseUs == 0;
-    ++file.frames;
-    file.same += time_us == file.last_us ? 1 : 0;
-    file.last_us = time_us;
+    for (Stamps* const of : {&files[seen.place.file], &taps[seen.tap]}) {
+      of->coarse = of->coarse && time_us % kCoarseUs == 0;
+      if (of->frames++ > 0) of->grid_us = std::gcd(of->grid_us, time_us - of->last_us);
+      of->same += time_us == of->last_us ? 1 : 0;
+      of->last_us = time_us;
+    }
   }
   const auto coarse = [](const Stamps& file) { return file.coarse && 2 * file.same > file.frames; };
   for (Observation& seen : run.seen) {
@@ -207,6 +214,13 @@ void leave_out_coarse_stamps(Run& run) {
     run.facts.push_back(run.files[i] +
                         " has stamps of whole seconds or tenths, which are left out");
   }
+  for (const Stamps& tap : taps) {
+    if (tap.same == 0 || tap.frames - tap.same < kManyStamps || tap.grid_us <= kFineUs) continue;
+    run.grid_us = std::max(run.grid_us, tap.grid_us);
+  }
+  if (run.grid_us == 0) return;
+  run.facts.push_back("stamps are whole steps of " + std::to_string(run.grid_us) +
+                      " us apart; what passed between two frames may differ by one");
 }
 
 // Makes times count from `begin_us`, else from the first one, and orders what several taps saw.

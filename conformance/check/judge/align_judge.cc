@@ -1,5 +1,6 @@
 // judge(), as observation.h declares it. It judges a run in more than one way where only common
-// frames tell the order of its files, or where the clock of a recorder stepped.
+// frames tell the order of its files, where the clock of a recorder stepped, or where those of its
+// taps differ.
 #include <algorithm>
 #include <iterator>
 #include <limits>
@@ -13,8 +14,11 @@
 #include "codec/reflect/requirements.h"
 #include "conformance/check/align/align_logs.h"
 #include "conformance/check/input/read.h"
+#include "conformance/check/judge/context.h"
 #include "conformance/check/judge/findings.h"
 #include "conformance/check/judge/judge_pass.h"
+#include "conformance/check/links.h"
+#include "conformance/check/message.h"
 #include "conformance/check/observation.h"
 
 namespace rubric::check {
@@ -192,6 +196,46 @@ Report judge_each_gap(const Run& run, const Options& options) {
   return report;
 }
 
+// Judges a run of one clock. Where its frames show that stamps of the air or of lines are late, a
+// failure must be found, too, with those of the other so much later; and where files do not have
+// their frames in the order of the stamps, in this order as well.
+Report judge_each_skew(const Run& run, const Options& options) {
+  Judge straight(run, options);
+  Report report = run.steps.empty() ? straight.judge() : judge_each_gap(run, options);
+  if (std::ranges::none_of(report.findings, blames)) return report;
+  const auto stands_with = [&](const auto& later_us) {
+    Run now = run;
+    for (Observation& seen : now.seen) {
+      if (seen.node.empty() && seen.place.timed()) seen.place.time_us += later_us(seen);
+    }
+    merge(now);
+    now.has_time = run.has_time;
+    now.start_us = run.start_us;
+    const std::set<Name> blamed = blamed_in(Judge(now, options).judge());
+    for (Finding& finding : report.findings) {
+      const bool stands = blamed.contains(name_of(finding));
+      if (blames(finding) && !stands) finding.severity = Severity::kInconclusive;
+    }
+  };
+  const auto moved = [&](machine::Link link, std::int64_t by_us) {
+    if (by_us == 0) return;
+    stands_with(
+        [&](const Observation& seen) { return run.taps[seen.tap].link == link ? by_us + 1 : 0; });
+  };
+  moved(machine::Link::kSerial, straight.taps_cross().air_us);
+  moved(machine::Link::kRadio, straight.taps_cross().line_us);
+  std::int64_t most_us = 0;  // All others are later by this: the first frame may be turned.
+  for (const auto& [frame, by_us] : run.turned) most_us = std::max(most_us, by_us);
+  if (most_us > 0) {
+    stands_with([&](const Observation& seen) {
+      const auto turned = run.turned.find({seen.place.file, seen.place.frame});
+      return turned == run.turned.end() ? most_us : most_us - turned->second;
+    });
+  }
+  report.verdict = verdict_of(report.findings);
+  return report;
+}
+
 // Moves the whole run to later times.
 void move_all(Run& run, std::int64_t by_us) {
   const auto move = [by_us](std::int64_t time_us) { return time_us + by_us; };
@@ -347,6 +391,60 @@ Report judge_each_log(const Run& run, const Options& options) {
 
 }  // namespace
 
+TapsCross Context::find_taps_cross() const {
+  using Key = std::pair<machine::Address, std::uint16_t>;  // Source and number.
+  // What came down lines and was not radiated, and when a sink radiated what had not come.
+  struct Down {
+    int waiting = 0;
+    std::int64_t ahead_us = INT64_MIN / 2;
+  };
+  TapsCross out;
+  std::map<Key, std::int64_t> up;  // When each was passed on.
+  std::set<Key> sent;              // By its mote.
+  std::map<Key, Down> down;
+  const Observation* last = nullptr;  // Frame on the air.
+  for (std::size_t i = run.past.senders.size(); i < run.seen.size(); ++i) {
+    const Observation& seen = run.seen[i];
+    if (!seen.node.empty() || !seen.place.timed()) continue;
+    const auto late = [&](std::int64_t& most_us, std::int64_t due_us) {
+      const std::int64_t late_us = seen.place.time_us - due_us;
+      if (late_us <= options.skew_us) most_us = std::max(most_us, late_us);
+      return late_us <= options.skew_us;
+    };
+    const bool radio = seen.kind == Observation::Kind::kRadio;
+    // An acknowledgement that comes late has a late stamp.
+    const bool link_ack = seen.kind == Observation::Kind::kLinkAck && last != nullptr &&
+                          last->tap == seen.tap && last->has_dsn && last->dsn == seen.dsn;
+    if (link_ack) late(out.air_us, last->place.time_us + ack_within_us(*last));
+    if (radio) last = &seen;
+    Net net;
+    if (!radio && seen.kind != Observation::Kind::kSerial) continue;
+    if (seen.frame.type != am::kNet || !parse_net(seen.frame.payload, net)) continue;
+    const Key key(net.src, net.seq_num);
+    if (!radio && !seen.to_mote) {
+      up.try_emplace(key, seen.place.time_us);
+    } else if (!radio) {
+      Down& its = down[key];
+      if (!late(out.line_us, std::exchange(its.ahead_us, INT64_MIN / 2))) ++its.waiting;
+    } else if (seen.frame.src == net.src.devid && net.src.devid != sink_am) {
+      const auto before = up.find(key);
+      if (before != up.end() && !sent.contains(key)) late(out.air_us, before->second);
+      sent.insert(key);
+    } else if (seen.frame.src == sink_am && !who.marks[i].repeat) {
+      // A sink has from its host alone what a PC sent, or what is for another island.
+      const bool handed = net.src.devid == machine::kNullDevid ||
+                          (net.src.pid != net.dest.pid && net.dest.pid != machine::kBroadcastPid);
+      Down& its = down[key];
+      if (its.waiting > 0) {
+        --its.waiting;
+      } else if (handed) {
+        its.ahead_us = seen.place.time_us;
+      }
+    }
+  }
+  return out;
+}
+
 Report judge(const Run& run, const Options& options) {
   if (run.tells_all() && !(options.start_cold && options.sniffer_complete)) {
     Options known = options;
@@ -355,7 +453,7 @@ Report judge(const Run& run, const Options& options) {
   }
   if (!run.logs.empty()) return judge_each_log(run, options);
   if (!run.loose.empty() || !run.slack_taps.empty()) return judge_each_order(run, options);
-  return run.steps.empty() ? Judge(run, options).judge() : judge_each_gap(run, options);
+  return judge_each_skew(run, options);
 }
 
 }  // namespace rubric::check

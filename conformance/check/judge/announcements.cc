@@ -156,7 +156,7 @@ void Announcements::refuse_report(SinkWatch& sink, PairWatch& watch, const Place
   // In one file the order of its frames tells which came first, if it does so of other frames.
   const bool one_file = ack != nullptr && ack->place.file == at.file;
   const bool later = one_file && ack->place.frame > at.frame;
-  if (ack != nullptr && (!later || context_.taps_cross())) {
+  if (ack != nullptr && (!later || context_.taps_cross().air_us > 0)) {
     watch.know_nothing();
     watch.ahead_us = at.time_us;
     if (one_file && !later) return;

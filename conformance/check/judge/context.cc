@@ -89,6 +89,7 @@ void Context::look_up() {
     report(one.requirement, Severity::kInconclusive, run.seen[one.index].place, node,
            {one.text, one.expected, {}});
   }
+  doubt_lone_replies();
   find_restarts();
   Losses losses = find_losses(run, who, options);
   line_losses = std::move(losses.lines);
@@ -122,34 +123,34 @@ bool Context::comes(std::uint16_t node, const Observation& sent, machine::Addres
   return soon(sent.place.time_us, is_cause) != nullptr;
 }
 
-bool Context::taps_cross() const {
+const TapsCross& Context::taps_cross() const {
   if (!taps_cross_) taps_cross_ = find_taps_cross();
   return *taps_cross_;
 }
 
-bool Context::find_taps_cross() const {
-  using Key = std::pair<machine::Address, std::uint16_t>;  // Source and number.
-  std::map<Key, std::int64_t> up;                          // When each was passed on.
-  std::set<Key> sent;                                      // By its mote.
-  for (std::size_t i = run.past.senders.size(); i < run.seen.size(); ++i) {
+// A sink of which nothing but one reply is seen may be another one that offers a wrong island, and
+// misses a frame then.
+void Context::doubt_lone_replies() {
+  for (std::size_t i = 0; i < run.seen.size(); ++i) {
     const Observation& seen = run.seen[i];
-    Net net;
-    const bool frame =
-        seen.kind == Observation::Kind::kRadio || seen.kind == Observation::Kind::kSerial;
-    if (!frame || !seen.node.empty() || seen.to_mote || !seen.place.timed()) continue;
-    if (seen.frame.type != am::kNet || !parse_net(seen.frame.payload, net)) continue;
-    const Key key(net.src, net.seq_num);
-    if (seen.kind == Observation::Kind::kSerial) {
-      up.try_emplace(key, seen.place.time_us);
-    } else if (seen.frame.src == net.src.devid && net.src.devid != sink_am) {
-      const auto before = up.find(key);
-      const bool late =
-          before != up.end() && seen.place.time_us - before->second <= options.skew_us;
-      if (late && !sent.contains(key)) return true;
-      sent.insert(key);
+    const std::uint16_t sender = who.marks[i].device;
+    if (seen.kind != Observation::Kind::kRadio || seen.frame.type != am::kJoinReply) continue;
+    if (sender == kNobody || device(sender).frames != 1 || !device(sender).taps.empty()) continue;
+    const bool given = std::ranges::any_of(options.nodes, [&](const KnownNode& node) {
+      return node.role == machine::Role::kSink && node.island == device(sender).island;
+    });
+    for (const std::uint16_t sink : sinks) {
+      const bool misses = std::ranges::any_of(device(sink).holes, [&](const auto& hole) {
+        return hole.first <= seen.place.time_us && seen.place.time_us <= hole.second;
+      });
+      if (given || sink == sender || device(sink).am != seen.frame.src || !misses) continue;
+      report("J3-ADDRESS"_rule, Severity::kInconclusive, seen.place, sink,
+             {"join_reply offers island " + number(device(sender).island) +
+                  ", of whose sink nothing else is seen, while this one misses a frame.",
+              "Island " + number(device(sink).island) + ", if this sink sent it.",
+              {}});
     }
   }
-  return false;
 }
 
 void Context::find_restarts() {

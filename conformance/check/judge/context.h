@@ -39,6 +39,14 @@ inline std::int64_t grown_ms_of(std::uint32_t from_ms, std::uint32_t to_ms,
   return passed_ms + static_cast<std::int32_t>(to_ms - expected_ms);
 }
 
+/// By how much a run shows that stamps of one tap are late beside those of another, at most the
+/// skew that is allowed.
+struct TapsCross {
+  std::int64_t air_us = 0;   ///< A message was on a line before its mote sent it, or an
+                             ///< acknowledgement of the link is late.
+  std::int64_t line_us = 0;  ///< A sink radiated a message before it came down its line.
+};
+
 struct Context {
   static constexpr std::int64_t kRoundedUs = 2;
   /// For so long after its time a log's node may still do what a busy line or application holds up.
@@ -90,14 +98,22 @@ struct Context {
     return node < logged_.size() ? logged_[node] : unlogged_;  // A log's are the first devices.
   }
   const machine::Profile& profile(std::uint16_t node) const { return terms(node).profile; }
+  /// Returns whether a sender that is none of the sinks has their address, and sends until a time
+  /// after the first one and from before the second one on.
+  bool stray_sink(std::int64_t from_us = 0, std::int64_t to_us = INT64_MAX) const {
+    return std::ranges::any_of(who.devices, [&](const Device& d) {
+      return !d.known && d.radio && d.am == sink_am && d.first_us <= to_us && d.last_us >= from_us;
+    });
+  }
   /// Returns how many messages a buffer for this line holds at least (decision 122).
   std::size_t room(std::uint16_t node, machine::Link line) const {
     return std::min(line == machine::Link::kRadio ? machine::kRadioRoom : machine::kSerialRoom,
                     terms(node).buffers);
   }
-  /// Returns how early a timer may look (decision 128). Ticks of logs are rounded to microseconds.
+  /// Returns how early a timer may look (decision 128). Ticks of logs are rounded to microseconds,
+  /// and stamps of a coarse clock by more.
   std::int64_t early_us(std::uint16_t node) const {
-    return machine::us_of(profile(node).early_ticks) + kRoundedUs;
+    return machine::us_of(profile(node).early_ticks) + kRoundedUs + run.grid_us;
   }
   std::int64_t join_period_us(std::uint16_t mote) const {
     return machine::us_of(profile(mote).join_period_ticks);
@@ -109,7 +125,7 @@ struct Context {
   /// Returns the mote of that AM address whose calls take longest; kNobody if none is known.
   std::uint16_t slowest_mote(std::uint16_t am) const;
   std::int64_t response_us(std::uint16_t node) const {
-    return terms(node).response_us + run.slack_us;
+    return terms(node).response_us + run.slack_us + run.grid_us;
   }
   std::int64_t ack_timeout_us(std::uint16_t node) const { return terms(node).ack_timeout_us; }
   bool ack_timeout_stated(std::uint16_t node) const {
@@ -170,9 +186,9 @@ struct Context {
   /// of what it sends, so soon that it may be the cause: the clocks of two taps may differ.
   bool comes(std::uint16_t node, const Observation& sent, machine::Address src,
              std::uint16_t seq_num) const;
-  /// Returns whether a message is on a sink's line before it is on the air: then the clocks of the
-  /// taps differ, and the order of one file's frames tells nothing of what another tap saw.
-  bool taps_cross() const;
+  /// Returns by how much the frames of a run show that the clocks of its taps differ: then the
+  /// order of one file's frames tells nothing of what another tap saw.
+  const TapsCross& taps_cross() const;
   /// Returns the first such thing that was seen then, or later by at most `within_us`.
   template <class Wanted>
   const Observation* next(std::int64_t time_us, std::int64_t within_us, Wanted is_wanted) const {
@@ -292,8 +308,9 @@ struct Context {
     return node < logs_us_.size() && captured_ && !device(node).hearing;
   }
   void find_restarts();
-  bool find_taps_cross() const;
-  mutable std::optional<bool> taps_cross_;  // Found when it is asked for.
+  void doubt_lone_replies();
+  TapsCross find_taps_cross() const;
+  mutable std::optional<TapsCross> taps_cross_;  // Found when it is asked for.
   int backlog_of(std::uint16_t node, std::size_t index) const;
   int backlog(std::uint16_t node, std::int64_t time_us) const;
   /// Findings that are told as one.

@@ -238,10 +238,11 @@ bool Forwarding::relayed(Line& line, const Observation& seen, const Net& net) {
   if (heard->relayed < 255) ++heard->relayed;
   const bool all = net.dest.pid == machine::kBroadcastPid && net.sound && heard->passed == 0;
   if (right || (all && !again)) return true;
-  // All sinks have one AM address, so another sink, of which no frame was found, may have sent it.
+  // All sinks have one AM address, so another sink, of which no frame was found, or some that were
+  // taken for a stray sender's, may have sent it.
   const bool anothers = std::ranges::any_of(lines_, [&](const Line& other) {
-    return other.sink != line.sink && !context_.device(other.sink).radio &&
-           other.island == net.dest.pid;
+    const bool unfound = !context_.device(other.sink).radio || context_.stray_sink();
+    return other.sink != line.sink && unfound && other.island == net.dest.pid;
   });
   const bool open = anothers || line.changing(seen.place.time_us);
   const Severity severity = forbidden && heard->weak ? Severity::kWeak : Severity::kFail;
@@ -338,7 +339,9 @@ void Forwarding::refuse_down(Line& line, const Observation& seen, const Net& net
   if (same_message(best->net, net) && same_payload(best->net, net)) {
     said.text = "The sink radiates " + name_of(net) + " again.";
     said.expected = "Once for each time that it came over serial.";
-    context_.report("N2-ONCE"_rule, context_.on_line(line.sink, Severity::kFail), seen.place,
+    // It may have come before, too, where the capture begins later.
+    const std::int64_t since_us = seen.place.time_us - context_.response_us(line.sink);
+    context_.report("N2-ONCE"_rule, context_.unless_given(line.sink, since_us), seen.place,
                     line.sink, std::move(said));
     return;
   }
@@ -366,11 +369,14 @@ void Forwarding::overdue_down(Line& line, std::int64_t now_us, Severity most) {
     const bool elsewhere = std::ranges::any_of(lines_, [&](const Line& other) {
       return &other != &line && holds(other.down, passing.net, false);  // It may have radiated it.
     });
-    const bool open = !passing.sure || elsewhere || crowded(line, passing, Link::kRadio);
-    const Severity severity =
-        open ? Severity::kInconclusive : context_.without(line.sink, passing.place.time_us, now_us);
-    const Severity its = std::min(most, context_.on_line(line.sink, severity));
+    // By another clock it may have been radiated before it came, or taken for a stray sender's.
     const bool log = context_.device(line.sink).hearing;
+    const std::int64_t since_us = passing.place.time_us - (log ? 0 : context_.options.skew_us);
+    const bool stray = !log && context_.stray_sink(since_us, now_us);
+    const bool open = !passing.sure || elsewhere || stray || crowded(line, passing, Link::kRadio);
+    const Severity severity =
+        open ? Severity::kInconclusive : context_.without(line.sink, since_us, now_us);
+    const Severity its = std::min(most, context_.on_line(line.sink, severity));
     const std::string proof = log            ? "The sink was given "
                               : passing.sure ? "The sink confirmed "
                                              : "Nothing proves that the sink took ";

@@ -24,6 +24,7 @@ class Judge {
  public:
   Judge(const Run& run, const Options& options);
   Report judge();
+  const TapsCross& taps_cross() const { return context_.taps_cross(); }
 
  private:
   bool is(std::uint16_t device, machine::Role role) const;

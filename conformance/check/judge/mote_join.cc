@@ -14,7 +14,6 @@ using Phase = JoinMote::Phase;
 namespace {
 
 constexpr std::uint8_t kFewAcks = 6;  // The first and five repeats (decision 102).
-constexpr std::int64_t kRecentUs = 1'000'000;
 
 AckJoin expected_ack(const MoteHypothesis& h) {
   return {
@@ -382,7 +381,8 @@ void MoteJoins::refuse_ack(std::uint16_t mote, const Observation& seen, const Ac
     }
   } else {
     // It acks a reply that it should not have accepted; the last replies may show which.
-    const bool recent = watch.wrong_reply && now - watch.wrong_place.time_us <= kRecentUs;
+    const std::int64_t recent_us = context_.response_us(mote) + context_.join_period_us(mote);
+    const bool recent = watch.wrong_reply && now - watch.wrong_place.time_us <= recent_us;
     const bool asked = h.join.phase == Phase::kJoining;
     const bool own = asked && ack.seq_num == h.join.seq_num &&
                      ack.descriptor == h.join.descriptor && ack.src.pid == ack.dest.pid &&

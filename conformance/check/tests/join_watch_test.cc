@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "conformance/check/tests/failures.h"
 #include "conformance/check/tests/testing.h"
 #include "conformance/check/tests/testing_log.h"
 
@@ -238,6 +239,22 @@ TEST(JoinWatch, BeforeTheFirstFrameOfARunOneMayHaveEscaped) {
   };
   EXPECT_EQ(rules(false), "");
   EXPECT_NE(rules(true).find("J4-JOINED"), std::string::npos) << rules(true);
+}
+
+// The sinks of two islands have one address. Of a reply that offers another island only the gap in
+// the DSNs of the one that is seen tells that it may be its own.
+TEST(SinkIslands, AReplyThatMayBeTheOnlySinksOwnIsDoubted) {
+  Script script;
+  script.join(0, 11, 2, 100).request(1000, 3, 200);
+  const Payload wrong = {0, 99, 0, 3, 0, 0, 3, 242, 0, 200};
+  script.radio(1010, 1, 3, am::kJoinReply, wrong, 11).join(2000, 11, 4, 300);
+  const Report report = judge(script.run, {});
+  EXPECT_TRUE(failures_of(report).empty());
+  EXPECT_NE(rules_of(report.findings, Severity::kInconclusive).find("J3-ADDRESS"),
+            std::string::npos)
+      << rules_of(report.findings);
+  const Report given = judge(script.run, {.nodes = {{1, machine::Role::kSink, 99}}});
+  EXPECT_EQ(rules_of(given.findings).find("J3-ADDRESS"), std::string::npos);
 }
 
 }  // namespace

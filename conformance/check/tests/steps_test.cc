@@ -85,6 +85,7 @@ TEST(Steps, TurnedFramesOfOneTapKeepTheOrderOfTheFile) {
   const std::uint64_t last = script.run.seen.back().place.frame;
   check::Run run = stepped_at(script, 0, 0);
   EXPECT_TRUE(run.steps.empty());
+  EXPECT_EQ(run.turned.size(), 1U);  // It is judged in the order of the stamps, too.
   std::uint64_t frame = 0;
   for (const Observation& seen : run.seen) {
     if (seen.tap != 1) continue;

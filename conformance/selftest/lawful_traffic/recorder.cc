@@ -1,7 +1,9 @@
-// Recorders: their clocks step, drift, or fail once; or they miss packets of every tap.
+// Recorders: their clocks step, drift, are coarse, or fail once; or they miss packets of every tap,
+// or hand them on late or turned round.
 #include "conformance/selftest/lawful_traffic/recorder.h"
 
 #include <algorithm>
+#include <map>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -14,6 +16,9 @@ constexpr std::int64_t kStepMinUs = 20'000;
 constexpr std::int64_t kBackMinUs = 1'200'000;
 constexpr std::size_t kStepOrders = 17;
 constexpr std::int64_t kDriftPpm = 500;
+constexpr std::int64_t kCoarseUs = 50'000;
+constexpr std::int64_t kLateUs = 20'000;
+constexpr std::int64_t kTurnedUs = 5'000;
 
 // Returns a size from 20 ms to 44 minutes; each order of magnitude is as likely.
 std::int64_t forth_us(Random& random) {
@@ -73,6 +78,39 @@ void radio_alone(Traffic& traffic, Random&) {
                 [](const LawfulPacket& packet) { return packet.interface != "radio"; });
 }
 
+void begins_late(Traffic& traffic, Random& random) {
+  const auto begin = traffic.packets.begin();
+  traffic.packets.erase(
+      begin, begin + static_cast<std::ptrdiff_t>(random.below(traffic.packets.size() / 2 + 1)));
+  traffic.cold_start = false;
+}
+void coarse_stamps(Traffic& traffic, Random&) {
+  for (LawfulPacket& packet : traffic.packets) packet.time_us -= packet.time_us % kCoarseUs;
+}
+// Hands on what is on lines late, each line in its order.
+void late_lines(Traffic& traffic, Random& random) {
+  std::map<std::string, std::int64_t> last;
+  for (LawfulPacket& packet : traffic.packets) {
+    if (packet.interface == "radio") continue;
+    std::int64_t& latest = last[packet.interface];
+    latest = std::max(latest, packet.time_us + kLateUs + random.between(0, kLateUs / 4));
+    packet.time_us = latest;
+  }
+  std::ranges::stable_sort(traffic.packets, {}, &LawfulPacket::time_us);
+}
+// Writes neighbours on the air in the other order, with their stamps.
+void turns(Traffic& traffic, Random& random) {
+  for (std::size_t i = 0; i + 1 < traffic.packets.size(); ++i) {
+    LawfulPacket& first = traffic.packets[i];
+    LawfulPacket& second = traffic.packets[i + 1];
+    const bool near = second.time_us - first.time_us <= kTurnedUs && first.interface == "radio" &&
+                      second.interface == "radio";
+    if (!near || !random.chance(5)) continue;
+    std::swap(first, second);
+    ++i;
+  }
+}
+
 constexpr Recorder kRecorders[] = {
     {"exact", "every packet with its time", exact},
     {"steps_back", "the clock steps back once, by 1.2 s to 44 minutes", steps_back},
@@ -84,6 +122,10 @@ constexpr Recorder kRecorders[] = {
     {"drops_few", "a twentieth is missing", drops_few},
     {"drops_and_steps", "a fifth is missing, and the clock steps four times", drops_and_steps},
     {"radio_alone", "what is on the air alone", radio_alone},
+    {"begins_late", "up to half of the packets are over when it begins", begins_late},
+    {"coarse_stamps", "stamps are whole steps of 50 ms apart", coarse_stamps},
+    {"late_lines", "what is on lines comes 20 to 25 ms late", late_lines},
+    {"turns", "a twentieth of close neighbours on the air is written in the other order", turns},
 };
 
 }  // namespace
