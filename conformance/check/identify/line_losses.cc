@@ -9,8 +9,9 @@ namespace {
 constexpr std::size_t kNumbersMin = 48;    // Of a line; a fifth of all frames shows by then,
 constexpr std::size_t kNumbersMissed = 8;  // and less when so many of them must be missing.
 constexpr std::size_t kHoleShare = 50;     // Frames of the air for each hole among them.
-// Nobody states how long a host waits for a confirmation; those of TinyOS wait 1 s (ACK_TIMEOUT of
-// Packetizer.java and serialsource.c). Stamps of frames on the line may be less apart.
+// No parameter says how long a host waits for a confirmation; those of TinyOS wait 1 s
+// (ACK_TIMEOUT of Packetizer.java and serialsource.c). Stamps of frames on the line may be less
+// apart.
 constexpr std::int64_t kHostWaitsUs = 950'000;
 // Few holes may be a few less than there are as a rule, and a line may lose as much more.
 constexpr std::size_t kHolesMore = 3;

@@ -9,7 +9,8 @@
 namespace rubric::check {
 namespace {
 
-// TinyOS hosts wait 1000 ms (ACK_TIMEOUT of Packetizer.java and serialsource.c); nobody states it.
+// No parameter says how long a host waits; those of TinyOS wait 1000 ms (ACK_TIMEOUT of
+// Packetizer.java and serialsource.c).
 constexpr std::int64_t kSerialRepeatUs = 1'500'000;
 constexpr std::int64_t kFrameOnLineUs = 100'000;  // A report that waited for the line.
 constexpr std::size_t kShownMax = 256;

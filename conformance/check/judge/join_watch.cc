@@ -10,7 +10,7 @@ namespace {
 using Phase = machine::JoinMote::Phase;
 
 constexpr std::size_t kJoinCrowd = 6;       // Frames; then a buffer may have been full.
-constexpr std::int64_t kClockOffMs = 1000;  // Nobody states it. (decision 119)
+constexpr std::int64_t kClockOffMs = 1000;  // No parameter says it (decision 119).
 
 }  // namespace
 

@@ -8,7 +8,7 @@
 namespace rubric::check {
 
 void SinkJoins::judge_clock(SinkWatch& sink, const Observation& seen, const Reply& reply) {
-  constexpr std::int64_t kOffMs = 1000;  // Nobody states it. (decision 119)
+  constexpr std::int64_t kOffMs = 1000;  // No parameter says it (decision 119).
   const std::int64_t now = seen.place.time_us;
   const std::vector<ClockStep>& steps = context_.run.steps;
   const bool stepped = doubt_us(steps, sink.clock_us, now) == ClockStep::kUnknown;
