@@ -174,6 +174,7 @@ void InputFile::wait() {
     const bool same =
         ::fstat(fd_, &ours) == 0 && ours.st_dev == named.st_dev && ours.st_ino == named.st_ino;
     if (!same) throw FileChanged("another file has taken its name");
+    if (!still_has_tail(0)) throw FileChanged("it was overwritten");
   }
   if (on_idle_) on_idle_();
   std::this_thread::sleep_for(kFollowEvery);

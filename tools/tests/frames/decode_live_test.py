@@ -72,15 +72,16 @@ class Live(LiveTest):
     def test_a_file_that_is_overwritten(self):
         path = self.folder / "growing.bin"
         whole = (ROOT / SERIAL).read_bytes()
-        path.write_bytes(whole[:1000])
-        running = self.started("decode", "--follow", path, "--format", "jsonl")
-        shown = len(running.lines(2))
-        self.assertEqual(shown, 2)
-        with open(path, "r+b") as file:
-            file.write(whole[500:])
-        code, _, err = running.end(None)
-        self.assertEqual(code, 66)
-        self.assertIn("it was overwritten", err)
+        for other in (whole[500:], whole[500:1500]):  # Larger, and of the same size.
+            path.write_bytes(whole[:1000])
+            running = self.started("decode", "--follow", path, "--format", "jsonl")
+            shown = len(running.lines(2))
+            self.assertEqual(shown, 2)
+            with open(path, "r+b") as file:
+                file.write(other)
+            code, _, err = running.end(None)
+            self.assertEqual(code, 66)
+            self.assertIn("it was overwritten", err)
 
     def test_a_serial_forwarder_that_goes(self):
         server = Forwarder(self)
