@@ -186,7 +186,8 @@ void Follow::add_report(Report now, std::int64_t settles_us) {
   if (gone_.until_us >= 0) {
     report_.facts.push_back("Frames before " + ms_text(gone_.until_us) +
                             " are no longer held: what is found there is settled, and what would "
-                            "need them to be decided is inconclusive or not found (--keep).");
+                            "need them to be decided is inconclusive or not found (--keep). A "
+                            "rule's count is the most that was held at a time.");
   }
   if (more_ + more.size() > 0) {
     report_.facts.push_back(number(more_ + more.size()) + " more findings are not listed.");
