@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <cstring>
 #include <map>
@@ -30,6 +32,7 @@
 #include "tools/cli/progress.h"
 #include "tools/cli/reading.h"
 #include "tools/cli/specs.h"
+#include "tools/cli/verdict.h"
 
 namespace rubric::cli {
 namespace {
@@ -521,6 +524,14 @@ bool goes_on(const InputOptions& options) {
     const int got = name == "-" ? ::fstat(0, &status) : ::stat(name.c_str(), &status);
     return got == 0 ? !S_ISREG(status.st_mode) : lines::parse_address(name).has_value();
   });
+}
+
+void require_inputs(const InputOptions& options) {
+  for (const std::string& name : names_of(options)) {
+    if (name == "-" || ::access(name.c_str(), R_OK) == 0) continue;
+    const std::string why = std::strerror(errno);
+    if (!lines::parse_address(name)) unreadable(name + ": " + why);
+  }
 }
 
 std::vector<std::string> all_inputs(const InputOptions& options) {

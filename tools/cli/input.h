@@ -44,6 +44,9 @@ void add_live_options(Command& app, InputOptions& options);
 /// Returns whether the input goes on until somebody ends it: a line in use, a followed file, a
 /// pipe.
 bool goes_on(const InputOptions& options);
+/// Ends the command if a source is a file that cannot be opened: before an output replaces one that
+/// is good.
+void require_inputs(const InputOptions& options);
 
 /// Returns all files that are read, "-" for stdin, and the one of --spec: no output may be one of
 /// them.

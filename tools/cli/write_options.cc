@@ -25,7 +25,8 @@ void add_write_options(Command& command, WriteOptions& options, const std::strin
   };
   command
       .add_option("--rotate", options.rotate,
-                  "Go on in a next file, FILE.2, after this size (k, M, G) or time (s, min, h, d)")
+                  "Go on in a next file, as in FILE.2.pcapng, after this size (k, M, G) or time "
+                  "(s, min, h, d)")
       .check(check, "SIZE|TIME")
       .needs(write);
 }
@@ -51,6 +52,9 @@ void check_place(const std::string& option, const std::string& path, bool replac
 void check_write(const WriteOptions& options, const std::vector<std::string>& inputs, bool grows) {
   if (options.path.empty()) return;
   keep_apart("--write", options.path, inputs);
+  if (!grows && !options.rotate.empty()) {
+    throw UsageError("--rotate", "is for captures that grow: no source is a line or --follow");
+  }
   if (text::packing_of_name(options.path) != text::Packing::kNone) {
     throw UsageError("--write", options.path +
                                     ": captures that grow are not compressed; 'rubric "

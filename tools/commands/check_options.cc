@@ -108,6 +108,8 @@ void keep_outputs_apart(const CheckOptions& options) {
   if (!options.expect.empty()) inputs.push_back(options.expect);
   cli::keep_apart("--out", options.out, inputs);
   cli::keep_apart("--write", options.write.path, inputs);
+  inputs.insert(inputs.end(), {options.out, options.write.path});
+  cli::keep_report_apart(options.report, inputs);
 }
 
 std::vector<report::FrameRange> frame_ranges(const CheckOptions& options) {

@@ -212,6 +212,7 @@ class Decode {
   int run() {
     if (!options_.write.path.empty()) {
       const bool grows = cli::goes_on(options_.input);
+      cli::require_inputs(options_.input);
       cli::check_write(options_.write, cli::all_inputs(options_.input), grows);
       capture_.emplace(options_.write.path,
                        grows ? options_.write.growing() : lines::CaptureFile::Mode::kWhole,

@@ -320,7 +320,7 @@ void run_explore(const ExploreOptions& options) {
                              options.format, options.out);
   }
   if (!options.weakness_out.empty()) {
-    cli::keep_apart("--weakness-out", options.weakness_out, {options.out});
+    cli::keep_apart("--out-known", options.weakness_out, {options.out});
   }
   if (options.format == "dot") usage("--format dot draws --transitions");
   const auto nodes = std::make_unique<explore::Nodes>(resolve(options));

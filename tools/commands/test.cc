@@ -316,6 +316,9 @@ int run_test(TestOptions options) {
   if (!options.write_expect.empty()) {
     cli::keep_apart("--write-expect", options.write_expect, {options.out});
   }
+  std::vector<std::string> files = options.traces;
+  files.insert(files.end(), {options.expect, options.out, options.write_expect});
+  cli::keep_report_apart(options.report, files);
   plan.cases = selected(options, cases);
   if (options.list) return list(options, plan.cases);
   if (options.targets.empty()) throw cli::UsageError("--target is required");

@@ -221,12 +221,30 @@ class Files(Folder):
             self.assertIn(b"is also an input", run(*words).stderr, words)
             self.assertEqual(trace.read_text(), CASE, words)
 
+    def test_a_report_replaces_no_input(self):
+        (self.folder / "cases/machine").mkdir(parents=True)
+        for name, content, words in (
+                ("report.json", CAPTURE.read_bytes(), ("check",)),
+                ("report.tap", CASE.encode(), ("test", "--target", "machine")),
+                ("cases/machine/j2.rtr", CASE.encode(), ("test", "--target", "machine"))):
+            read = self.folder / name
+            read.write_bytes(content)
+            done = run(*words, read, "--report", self.folder)
+            self.assertEqual(done.returncode, 64, (name, done.stderr))
+            self.assertIn(b"--report", done.stderr, name)
+            self.assertEqual(read.read_bytes(), content, name)
+        out = self.folder / "new/index.html"
+        done = run("check", CAPTURE, "--report", out.parent, "--out", out)
+        self.assertEqual(done.returncode, 64, done.stderr)
+
     def test_a_source_that_cannot_be_had_costs_no_file(self):
         for source in ("sf@127.0.0.1:1", "serial@/nonexistent:telosb", "/nonexistent"):
             for words in (("decode", source, "--force", "--write"),
                           ("check", source, "--force", "--follow", "--write"),
                           ("forward", source, "--port", "0", "--force", "--write"),
-                          ("convert", source, "-o"), ("encode", source, "-o")):
+                          ("convert", source, "-o"), ("encode", source, "-o"),
+                          ("decode", CAPTURE, "/nonexistent", "--force", "--write"),
+                          ("convert", CAPTURE, "/nonexistent", "-o")):
                 for target in (self.old, self.folder / "new.pcapng"):
                     done = run(*words, target)
                     self.assertNotIn(done.returncode, (0, 1), words)
