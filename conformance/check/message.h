@@ -93,6 +93,13 @@ inline bool same_payload(const Net& a, const Net& b) {
   return equal(a.payload.first(n), b.payload.first(n));
 }
 
+/// Returns whether a transport of each node has this TRANSID. What is for another is dropped
+/// (T1-UNKNOWN).
+inline bool known_trans(std::uint8_t trans_id) {
+  return trans_id == component::kConnless || trans_id == component::kSynChannel ||
+         trans_id == component::kRubiconAck;
+}
+
 /// Returns whether both are the same message of one sender on one link, whatever follows its
 /// content: an underlying buffer may be longer.
 inline bool same_content(const machine::Frame& a, const machine::Frame& b) {

@@ -253,6 +253,7 @@ void Acks::refuse(std::uint16_t node, const Observation& seen, const Net& ack, s
   bool open = !of_mote && (!context_.has_lines(node) || context_.by_peis(node, ack.dest.pid));
   open = open || context_.comes(node, seen, ack.dest, its);
   const bool report = best != nullptr && is_report(best->net);
+  const std::string acks = best == nullptr ? "" : "It acks " + name_of(best->net);
   if (acked < 0) {
     said.text = "An ack's body of " + number(ack.body().size()) + " bytes holds no number.";
     said.expected = "The acknowledged number, alone or in a learning_notification.";
@@ -275,19 +276,17 @@ void Acks::refuse(std::uint16_t node, const Observation& seen, const Net& ack, s
     // It may have joined that island while its frames were missed.
     const bool joined = rule == "N5-FOREIGN"_rule && ack.src == best->net.dest;
     if (joined) severity = context_.without(node, best->place.time_us, now);
-    said.text = "It acks " + name_of(best->net) + ", which it should have " +
-                (rule == "N11-NBYTES"_rule ? "dropped." : "ignored.");
+    said.text =
+        acks + ", which it should have " + (rule == "N11-NBYTES"_rule ? "dropped." : "ignored.");
     said.expected = "No effect at this node.";
   } else if (best->net.is_ack()) {
     rule = "T2-LOOP"_rule;
     said.text = "It acks an ack, " + name_of(best->net) + ".";
     said.expected = "An ack is never acked.";
   } else if (best->net.reliable != 1) {
-    const bool flag = best->net.reliable == 0;  // Other values: decision 112.
-    rule = flag ? "T2-UNRELIABLE"_rule : "T2-TWO"_rule;
-    if (!flag) severity = Severity::kWeak;
-    said.text =
-        "It acks " + name_of(best->net) + ", whose reliable is " + number(best->net.reliable) + ".";
+    rule = best->net.reliable == 0 ? "T2-UNRELIABLE"_rule : "T2-TWO"_rule;
+    if (best->net.reliable != 0) severity = Severity::kWeak;  // (decision 112)
+    said.text = acks + ", whose reliable is " + number(best->net.reliable) + ".";
     said.expected = "An unreliable message is never acked.";
   } else if (best->net.broadcast()) {
     rule = "T2-BROADCAST"_rule;
@@ -295,10 +294,11 @@ void Acks::refuse(std::uint16_t node, const Observation& seen, const Net& ack, s
     said.text = "It acks the broadcast " + number(best->net.seq_num) + ".";
     said.expected = "A broadcast is not acked.";
   } else if (best->net.trans_id != component::kConnless) {
-    said.text =
-        "It acks " + name_of(best->net) + ", whose TRANSID is " + number(best->net.trans_id) + ".";
-    said.expected = "Acks of Connectionless messages.";
-    severity = Severity::kInconclusive;
+    const bool known = known_trans(best->net.trans_id);  // Else: decision 111.
+    if (!known) rule = "T1-UNKNOWN"_rule;
+    said.text = acks + ", whose TRANSID is " + number(best->net.trans_id) + ".";
+    said.expected = known ? "Acks of Connectionless messages." : "No effect at this node.";
+    if (known) severity = Severity::kInconclusive;
   } else {
     rule = "T2-ONCE"_rule;
     severity = context_.on_line(node, context_.without_copy(best->sender, best->place, now));

@@ -12,11 +12,6 @@ using machine::Route;
 constexpr std::int64_t kAtOnceUs = 50'000;
 constexpr std::int64_t kCallUs = 50'000;  // What send accepted is in its buffer then.
 
-bool known_trans(std::uint8_t trans_id) {
-  return trans_id == component::kConnless || trans_id == component::kSynChannel ||
-         trans_id == component::kRubiconAck;
-}
-
 // Returns the number that by the log a call of send returns; nothing if that is not plain.
 std::optional<std::uint16_t> returned(const Run& run, const Observation& call) {
   const auto from = run.seen.begin() + (&call - run.seen.data()) + 1;

@@ -258,6 +258,13 @@ const Fault kFaults[] = {
        net.reliable = 0;
        s.net(420, 2, 3, net).net(430, 3, 2, net.ack(6));
      }},
+    {"unknown_transport_acked", "T1-UNKNOWN",
+     [](Script& s) {
+       NetFields net = reliable({11, 2}, {11, 3}, 5);
+       NetFields ack = net.ack(6);
+       net.trans_id = 99;
+       s.net(420, 2, 3, net).net(430, 3, 2, ack);
+     }},
     {"acked_twice", "T2-ONCE",
      [](Script& s) {
        const NetFields net = reliable({11, 2}, {11, 3}, 5);
