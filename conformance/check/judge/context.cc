@@ -117,7 +117,8 @@ bool Context::comes(std::uint16_t node, const Observation& sent, machine::Addres
                       device(sender).partner == node;
     const bool air = seen.kind == Observation::Kind::kRadio && sender != node;
     Net net;
-    return (down || air) && seen.tap != sent.tap && seen.frame.type == am::kNet &&
+    // What came at the same time, and is before it in the run, was its cause already.
+    return &seen > &sent && (down || air) && seen.tap != sent.tap && seen.frame.type == am::kNet &&
            parse_net(seen.frame.payload, net) && net.src == src && net.seq_num == seq_num;
   };
   return soon(sent.place.time_us, is_cause) != nullptr;
@@ -505,7 +506,9 @@ Severity Context::without_copy(std::uint16_t sender, const Place& first,
   const bool late = now_us > due_us(sender, first.time_us) + kLinkRepeatUs;
   Severity severity = without(sender, first.time_us, now_us);
   // The one that is taken for the first may be the copy.
-  if (who.damaged(first.time_us - kLinkRepeatUs, first.time_us)) severity = Severity::kInconclusive;
+  if (who.damaged(first.time_us - kLinkRepeatUs, first.time_us) || after_begin(first.time_us)) {
+    severity = Severity::kInconclusive;
+  }
   // A copy has the DSN of the first, so that none seems to be missing.
   const bool told = options.sniffer_complete || (sender != kNobody && device(sender).hearing);
   return (late || told) && !lossy_air ? severity : std::min(severity, Severity::kInconclusive);

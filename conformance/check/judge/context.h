@@ -98,6 +98,10 @@ struct Context {
     return node < logged_.size() ? logged_[node] : unlogged_;  // A log's are the first devices.
   }
   const machine::Profile& profile(std::uint16_t node) const { return terms(node).profile; }
+  /// Returns whether a node may still have done then what it owed when the capture began.
+  bool after_begin(std::int64_t time_us) const {
+    return !options.start_cold && time_us <= run.start_us + response_us(kNobody);
+  }
   /// Returns whether a sender that is none of the sinks has their address, and sends until a time
   /// after the first one and from before the second one on.
   bool stray_sink(std::int64_t from_us = 0, std::int64_t to_us = INT64_MAX) const {

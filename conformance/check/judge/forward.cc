@@ -88,6 +88,8 @@ void Forwarding::judge_order(Line& line, const Passing& passing, const Observati
   if (passing.order > last.order && !passing.twin) last = {passing.order, passing.place.time_us};
   if (passing.order < last.order && !unclear) {
     Severity severity = context_.on_line(line.sink, Severity::kFail);
+    // The one that left before may have come before, too.
+    if (context_.after_begin(last.begun_us)) severity = std::min(severity, Severity::kInconclusive);
     // A message that came long ago may have been lost. Then a later copy of it, which the run does
     // not show, is what leaves here.
     const std::int64_t since_us = seen.place.time_us - context_.response_us(line.sink);

@@ -106,7 +106,7 @@ void Forwarding::pass_up(Line& line, Passing& passing, const Observation& seen) 
     const bool lost =  // Perhaps its power, and that island.
         of_island && line.told &&
         context_.may_have_restarted(line.sink, known_us, seen.place.time_us);
-    if (!format && (!line.island_sure || lost)) {
+    if (!format && (!line.island_sure || lost || context_.after_begin(passing.place.time_us))) {
       severity = std::min(severity, Severity::kInconclusive);
     }
     context_.report(passing.forbidden, severity, seen.place, line.sink, std::move(said));
