@@ -2,10 +2,8 @@
 
 #include <fmt/format.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
 #include <cstring>
 #include <map>
@@ -528,9 +526,7 @@ bool goes_on(const InputOptions& options) {
 
 void require_inputs(const InputOptions& options) {
   for (const std::string& name : names_of(options)) {
-    if (name == "-" || ::access(name.c_str(), R_OK) == 0) continue;
-    const std::string why = std::strerror(errno);
-    if (!lines::parse_address(name)) unreadable(name + ": " + why);
+    if (name != "-" && !lines::parse_address(name)) require_file(name);
   }
 }
 

@@ -2,11 +2,8 @@
 
 #include <fmt/format.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <memory>
 #include <mutex>
 #include <set>
@@ -73,9 +70,7 @@ bool names_file(std::string_view spec) { return spec.ends_with(".ksy"); }
 
 /// Reads the specs of a file into the model. Ends the command if the file itself is not there.
 void load_file(const std::string& file, rubricc::Model& model, rubricc::Diagnostics& diagnostics) {
-  if (::access(file.c_str(), R_OK) != 0) {
-    unreadable(fmt::format("{}: {}", file, std::strerror(errno)));
-  }
+  require_file(file);
   rubricc::load_specs({file}, model, diagnostics, shipped_specs());
 }
 

@@ -1,6 +1,10 @@
 #include "tools/cli/verdict.h"
 
+#include <unistd.h>
+
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <utility>
 
@@ -28,6 +32,10 @@ void unreadable(const std::string& what) {
   text::print_harmless(stderr,
                        "rubric: " + (what.ends_with('\n') ? what : text::harmless(what) + '\n'));
   exit_with(kExitInput);
+}
+
+void require_file(const std::string& path) {
+  if (::access(path.c_str(), R_OK) != 0) unreadable(path + ": " + std::strerror(errno));
 }
 
 std::string text_of_file(const std::string& path) {

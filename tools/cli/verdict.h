@@ -15,6 +15,8 @@ void set_verdict(Command& command, std::function<int()> run);
 /// Ends the subcommand because its input cannot be read. `what` is a line without its end, or lines
 /// with theirs, in which names have none.
 [[noreturn]] void unreadable(const std::string& what);
+/// Ends the command if the file is not there or may not be read.
+void require_file(const std::string& path);
 /// Returns a whole file, or stdin for "-"; ends the subcommand if that cannot be read.
 std::string text_of_file(const std::string& path);
 
