@@ -200,9 +200,9 @@ Report judge_each_gap(const Run& run, const Options& options) {
 // failure must be found, too, with those of the other so much later; and where files do not have
 // their frames in the order of the stamps, in this order as well.
 Report judge_each_skew(const Run& run, const Options& options) {
-  Judge straight(run, options);
-  Report report = run.steps.empty() ? straight.judge() : judge_each_gap(run, options);
+  Report report = run.steps.empty() ? Judge(run, options).judge() : judge_each_gap(run, options);
   if (std::ranges::none_of(report.findings, blames)) return report;
+  const TapsCross cross = Judge(run, options).taps_cross();
   const auto stands_with = [&](const auto& later_us) {
     Run now = run;
     for (Observation& seen : now.seen) {
@@ -222,8 +222,8 @@ Report judge_each_skew(const Run& run, const Options& options) {
     stands_with(
         [&](const Observation& seen) { return run.taps[seen.tap].link == link ? by_us + 1 : 0; });
   };
-  moved(machine::Link::kSerial, straight.taps_cross().air_us);
-  moved(machine::Link::kRadio, straight.taps_cross().line_us);
+  moved(machine::Link::kSerial, cross.air_us);
+  moved(machine::Link::kRadio, cross.line_us);
   std::int64_t most_us = 0;  // All others are later by this: the first frame may be turned.
   for (const auto& [frame, by_us] : run.turned) most_us = std::max(most_us, by_us);
   if (most_us > 0) {
@@ -393,7 +393,8 @@ Report judge_each_log(const Run& run, const Options& options) {
 
 TapsCross Context::find_taps_cross() const {
   using Key = std::pair<machine::Address, std::uint16_t>;  // Source and number.
-  // What came down lines and was not radiated, and when a sink radiated what had not come.
+  // Of a message: how often it came down a line and was not radiated since, and when a sink
+  // radiated it before it came.
   struct Down {
     int waiting = 0;
     std::int64_t ahead_us = INT64_MIN / 2;
