@@ -93,7 +93,7 @@ inline bool same_payload(const Net& a, const Net& b) {
   return equal(a.payload.first(n), b.payload.first(n));
 }
 
-/// Returns whether a transport of each node has this TRANSID. What is for another is dropped
+/// Returns whether each node has a transport of this TRANSID. A message with another one is dropped
 /// (T1-UNKNOWN).
 inline bool known_trans(std::uint8_t trans_id) {
   return trans_id == component::kConnless || trans_id == component::kSynChannel ||

@@ -117,7 +117,7 @@ bool Context::comes(std::uint16_t node, const Observation& sent, machine::Addres
                       device(sender).partner == node;
     const bool air = seen.kind == Observation::Kind::kRadio && sender != node;
     Net net;
-    // What came at the same time, and is before it in the run, was its cause already.
+    // A frame of the same time that is before it in the run has come already.
     return &seen > &sent && (down || air) && seen.tap != sent.tap && seen.frame.type == am::kNet &&
            parse_net(seen.frame.payload, net) && net.src == src && net.seq_num == seq_num;
   };
@@ -129,8 +129,8 @@ const TapsCross& Context::taps_cross() const {
   return *taps_cross_;
 }
 
-// A sink of which nothing but one reply is seen may be another one that offers a wrong island, and
-// misses a frame then.
+// A lone reply, of whose sink nothing else is seen, may be that of a known sink which offers a
+// wrong island: then this sink misses a frame.
 void Context::doubt_lone_replies() {
   for (std::size_t i = 0; i < run.seen.size(); ++i) {
     const Observation& seen = run.seen[i];

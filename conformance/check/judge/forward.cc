@@ -240,8 +240,8 @@ bool Forwarding::relayed(Line& line, const Observation& seen, const Net& net) {
   if (heard->relayed < 255) ++heard->relayed;
   const bool all = net.dest.pid == machine::kBroadcastPid && net.sound && heard->passed == 0;
   if (right || (all && !again)) return true;
-  // All sinks have one AM address, so another sink, of which no frame was found, or some that were
-  // taken for a stray sender's, may have sent it.
+  // All sinks have one AM address. So another sink may have sent it, if none of its frames was
+  // found or some were taken for those of a stray sender.
   const bool anothers = std::ranges::any_of(lines_, [&](const Line& other) {
     const bool unfound = !context_.device(other.sink).radio || context_.stray_sink();
     return other.sink != line.sink && unfound && other.island == net.dest.pid;

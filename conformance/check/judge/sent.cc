@@ -491,7 +491,7 @@ void Originals::judge_number(std::uint16_t node, const Observation& seen, const 
   const std::int64_t since_us = before.place.time_us;
   if (awaits) {
     before.reused |= !same;
-    // An ack that nobody captured would have ended the wait.
+    // An ack that was not captured would have ended the wait.
     const machine::Address dest = before.net.dest;
     const bool by_sink = dest.devid == context_.sink_am || dest.devid == machine::kNullDevid;
     const std::uint16_t acker =
