@@ -108,7 +108,8 @@ void add_diff(cli::Command& app) {
     sub.get_option(name).one_at_a_time();  // One at a time: traces may follow.
   }
   add_player_options(sub, options->shared);
-  sub.callback([options, &sub] { run_player_command(sub, [&] { compare(*options); }); });
+  sub.callback(
+      [options, &sub] { run_player_command(sub, options->targets, [&] { compare(*options); }); });
 }
 
 }  // namespace rubric::tools

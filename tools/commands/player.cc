@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <stdexcept>
@@ -32,7 +33,9 @@ void add_player_options(cli::Command& app, PlayerOptions& options) {
       .between(std::uint64_t{0}, suite::kSeedMax);
 }
 
-void run_player_command(const cli::Command& app, const std::function<void()>& work) {
+void run_player_command(const cli::Command& app, const std::vector<std::string>& names,
+                        const std::function<void()>& work) {
+  if (std::any_of(names.begin(), names.end(), targets::is_command)) targets::guard_children();
   targets::end_groups_on_signals();
   try {
     work();

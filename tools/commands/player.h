@@ -25,9 +25,10 @@ struct PlayerOptions {
 /// Adds --out, --timeout, --state and --seed, and the exit codes of verdicts.
 void add_player_options(cli::Command& app, PlayerOptions& options);
 
-/// Runs `work`; prints its exceptions on stderr and turns them into exit codes: 2 the kit or an
-/// implementation broke, 64 usage, 66 a trace cannot be read.
-void run_player_command(const cli::Command& app, const std::function<void()>& work);
+/// Runs `work`, which plays these targets; prints its exceptions on stderr and turns them into exit
+/// codes: 2 the kit or an implementation broke, 64 usage, 66 a trace cannot be read.
+void run_player_command(const cli::Command& app, const std::vector<std::string>& targets,
+                        const std::function<void()>& work);
 
 /// Returns one case of a file, with the headers that apply to it and the seed if it has none.
 trace::File seeded(const trace::File& file, const trace::Case& one, const PlayerOptions& options);

@@ -161,7 +161,11 @@ void add_shrink(cli::Command& app) {
                  "Keep to paper or deployed (default: as the trace says)")
       .one_of({"paper", "deployed"});
   add_player_options(sub, options->shared);
-  sub.callback([options, &sub] { run_player_command(sub, [&] { shrink_it(*options); }); });
+  sub.callback([options, &sub] {
+    std::vector<std::string> targets = options->references;
+    targets.push_back(options->target);
+    run_player_command(sub, targets, [&] { shrink_it(*options); });
+  });
 }
 
 }  // namespace rubric::tools

@@ -301,6 +301,10 @@ bool write_formats(const TestOptions& options, const suite::SuiteRun& run,
 }
 
 int run_test(TestOptions options) {
+  const bool starts_processes =
+      !options.app.empty() ||
+      std::any_of(options.targets.begin(), options.targets.end(), targets::is_command);
+  if (starts_processes && !options.list) targets::guard_children();
   use_protocol(options.protocol, {options.profile}, options.traces);
   const suite::Cases cases = read_cases(options);
   suite::Plan plan{.expected = read_expected(options)};

@@ -130,15 +130,18 @@ Identity machine_identity() {
   return {"rubric_machine", "1", {Role::kMote, Role::kSink, Role::kBaseStation}, false};
 }
 
+bool is_command(const std::string& target) {
+  const std::string_view text = target;
+  return target != "machine" && !text.starts_with("machine:") && !text.starts_with("sf:") &&
+         !text.starts_with("sf-server:") && !text.starts_with("serial:");
+}
+
 std::unique_ptr<Attachment> attach(const std::string& target, const Options& options) {
   if (target.find_first_not_of(" \t\n") == std::string::npos) {
     throw std::invalid_argument("a target has a name or is a command");
   }
   std::string_view text = target;
-  const bool of_rubicon = target == "machine" || text.starts_with("machine:") ||
-                          text.starts_with("sf:") || text.starts_with("sf-server:") ||
-                          text.starts_with("serial:");
-  if (of_rubicon && !trace::protocol().has_machine) {
+  if (!is_command(target) && !trace::protocol().has_machine) {
     throw std::invalid_argument(
         fmt::format("the machine and nodes at their lines are for RUBICON; {} needs a command that "
                     "speaks rct/1",

@@ -71,6 +71,9 @@ struct Options {
   std::string app = {};
 };
 
+/// Returns whether the target is a command, which runs as a process of its own.
+bool is_command(const std::string& target);
+
 /// Opens the target that the user wrote: `machine`, `machine:FLAW` (conformance/machine/flaws),
 /// `sf-server:PORT`, `sf:HOST:PORT`, `serial:DEVICE[:BAUD]`, `serial:tcp:HOST:PORT`, the last three
 /// perhaps with `:mote` at the end, else a shell command that uses rct/1. Starts nothing yet.

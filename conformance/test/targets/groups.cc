@@ -1,6 +1,10 @@
 #include "conformance/test/targets/groups.h"
 
 #include <poll.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <array>
 #include <atomic>
@@ -60,6 +64,28 @@ sigset_t all_signals() {
   return out;
 }
 
+// Waits for the child, passes the signals on to it, and ends as it did once all its descendants are
+// gone. Kills it if `parent` is given and is gone.
+[[noreturn]] void stand_by(pid_t child, const sigset_t& signals, pid_t parent) {
+  ::prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0);
+  int status = 0;
+  while (::waitpid(child, &status, WNOHANG) == 0) {
+    if (parent != 0 && ::getppid() != parent) ::kill(child, SIGKILL);
+    int signal = 0;
+    ::sigwait(&signals, &signal);
+    if (signal != SIGCHLD) ::kill(child, signal);
+  }
+  end_all_children();
+  if (WIFSIGNALED(status)) {
+    const rlimit no_core{};  // The child has written one.
+    ::setrlimit(RLIMIT_CORE, &no_core);
+    ::signal(WTERMSIG(status), SIG_DFL);
+    ::pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
+    ::raise(WTERMSIG(status));
+  }
+  ::_exit(WEXITSTATUS(status));
+}
+
 std::size_t take_place() {
   for (std::size_t i = 0; i < groups.size(); ++i) {
     pid_t free = kFree;
@@ -79,6 +105,26 @@ void end_groups_on_signals() {
     ::sigaction(signal, nullptr, &before);
     if (before.sa_handler != SIG_IGN) ::sigaction(signal, &ours, nullptr);
   }
+}
+
+void guard_children() {
+  ::signal(SIGCHLD, SIG_DFL);  // Where it is ignored nobody can wait for a child.
+  sigset_t signals = all_signals();
+  ::sigaddset(&signals, SIGCHLD);
+  sigset_t before;
+  ::pthread_sigmask(SIG_BLOCK, &signals, &before);
+  const pid_t first = ::getpid();
+  const pid_t guard = ::fork();
+  if (guard > 0) stand_by(guard, signals, 0);
+  if (guard == 0) {
+    ::prctl(PR_SET_PDEATHSIG, SIGCHLD);
+    const pid_t worker = ::fork();
+    if (worker > 0) {
+      ::setpgid(0, 0);  // What kills the group of the other two leaves this one.
+      stand_by(worker, signals, first);
+    }
+  }
+  ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
 }
 
 GroupStart::GroupStart() : place_(take_place()) {

@@ -14,6 +14,13 @@ namespace rubric::targets {
 /// For programs that attach processes; called once, while there is one thread.
 void end_groups_on_signals();
 
+/// Goes on in a child of a child of this process, and lets these two wait for it: they pass signals
+/// on and end as it does. Even where SIGKILL ends this process, or the one that goes on, or its
+/// whole group, the others still end all that was started, also what left its session. For programs
+/// that attach processes; called first of all, while there is one thread and little memory. Where
+/// no process can be had it does nothing.
+void guard_children();
+
 /// Guards the start of a child: signals that would end this process wait until the child's group is
 /// known. Several threads may start children at once.
 class GroupStart {

@@ -57,15 +57,18 @@ class Program {
     int out = 0;
     return std::fscanf(in_, "%d", &out) == 1 ? out : 0;
   }
-  void send(int signal) const { ::kill(pid_, signal); }
+  void send(int signal, bool group = false) const { ::kill(group ? -pid_ : pid_, signal); }
   bool runs() { return ::waitpid(pid_, &status_, WNOHANG) == 0; }
   /// Returns the signal that ended it; -1 if it does not end.
-  int ending_signal() {
-    ended_ = comes([&] { return ::waitpid(pid_, &status_, WNOHANG) == pid_; });
-    return ended_ && WIFSIGNALED(status_) ? WTERMSIG(status_) : -1;
-  }
+  int ending_signal() { return ends() && WIFSIGNALED(status_) ? WTERMSIG(status_) : -1; }
+  int exit_code() { return ends() && WIFEXITED(status_) ? WEXITSTATUS(status_) : -1; }
 
  private:
+  bool ends() {
+    ended_ = comes([&] { return ::waitpid(pid_, &status_, WNOHANG) == pid_; });
+    return ended_;
+  }
+
   pid_t pid_ = -1;
   std::FILE* in_ = nullptr;
   int status_ = 0;
@@ -126,6 +129,43 @@ TEST(Groups, IgnoredSignalsStayIgnored) {
   program.send(SIGTERM);
   EXPECT_EQ(program.ending_signal(), SIGTERM);
   EXPECT_TRUE(comes([&] { return is_dead(child); }));
+}
+
+// Whichever of the processes SIGKILL ends, and where it ends a group of them, all ends.
+TEST(Groups, KilledProgramsLeaveNothing) {
+  enum class Whom { kProgram, kWorker, kGroup };
+  for (const Whom whom : {Whom::kProgram, Whom::kWorker, Whom::kGroup}) {
+    SCOPED_TRACE(static_cast<int>(whom));
+    Program program([](const Program::Say& say) {
+      ::setpgid(0, 0);
+      guard_children();
+      end_groups_on_signals();
+      const auto child = Process::run(
+          "trap '' TERM; setsid sh -c 'echo $$; exec sleep 1000' &"
+          "env -i /usr/bin/setsid sh -c 'echo $$; exec sleep 1000' & cat");
+      say(std::to_string(::getpid()));
+      for (int i = 0; i < 2; ++i) say(child->read_line(soon()));
+      child->read_line(soon());  // It hangs.
+    });
+    const pid_t worker = program.number();
+    const pid_t left[] = {program.number(), program.number()};
+    ASSERT_GT(left[1], 0);
+    EXPECT_FALSE(is_dead(left[0]) || is_dead(left[1]));
+    if (whom == Whom::kWorker)
+      ::kill(worker, SIGKILL);
+    else
+      program.send(SIGKILL, whom == Whom::kGroup);
+    EXPECT_EQ(program.ending_signal(), SIGKILL);
+    EXPECT_TRUE(comes([&] { return is_dead(worker) && is_dead(left[0]) && is_dead(left[1]); }));
+  }
+}
+
+TEST(Groups, GuardsEndAsWhatTheyGuard) {
+  Program program([](const Program::Say&) {
+    guard_children();
+    ::_exit(7);
+  });
+  EXPECT_EQ(program.exit_code(), 7);
 }
 
 // Counts processes with this in their command line.

@@ -5,6 +5,7 @@ Usage: test_test.py RUBRIC in the project's folder.
 """
 
 import json
+import os
 import pathlib
 import re
 import shlex
@@ -14,7 +15,7 @@ import subprocess
 import time
 import unittest
 
-from test_testing import CASES, HONEST, Folder, comes, is_dead, rubric, test
+from test_testing import CASES, HONEST, Folder, comes, is_dead, rubric, sleeps, test
 from testing import RUBRIC
 
 # A mute adapter. One of two ends when the other is to play node 7, which does so after that end.
@@ -351,6 +352,25 @@ class Failing(Folder):
             run.send_signal(signal_number)
             self.assertEqual(run.wait(timeout=60), -signal_number)
             self.assertTrue(comes(lambda: is_dead(pid)))
+
+    def test_kill_ends_what_is_attached(self):
+        """By SIGKILL, against which nothing can be done; also what has left its session."""
+        for number, command in enumerate((["test", "--jobs", "2"], ["shrink"],
+                                          ["diff", "--target", "machine"])):
+            at = self.folder / f"pid{number}"
+            seconds = f"1000.{os.getpid()}{number}"
+            target = f"setsid sleep {seconds} & {self.fake('stubborn')} {at}"
+            run = subprocess.Popen(
+                [RUBRIC, *command, "conformance/cases/j10.rtr", "--target", target,
+                 "--timeout", "3000"],
+                stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            self.addCleanup(run.wait)
+            self.addCleanup(run.kill)
+            self.assertTrue(comes(at.exists))
+            pid = int(at.read_text())
+            self.assertTrue(sleeps(seconds))
+            run.kill()
+            self.assertTrue(comes(lambda: is_dead(pid) and not sleeps(seconds)))
 
     def test_hang_up_under_nohup(self):
         at = self.folder / "pid"

@@ -67,6 +67,17 @@ def is_dead(pid):
     return text.rpartition(")")[2].split()[0] == "Z"
 
 
+def sleeps(seconds):
+    """Returns whether a process sleeps for so long."""
+    for path in pathlib.Path("/proc").glob("[0-9]*/cmdline"):
+        try:
+            if path.read_bytes() == f"sleep\0{seconds}\0".encode():
+                return True
+        except OSError:
+            pass
+    return False
+
+
 def comes(condition):
     """Returns whether it comes true in a time that is ample on any busy host."""
     end = time.monotonic() + 60
