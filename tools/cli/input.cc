@@ -135,13 +135,16 @@ class Run {
     result_.live = true;
     const bool failed_before = result_.failed;  // Failures of other lines stay.
     lost_ = false;
-    lines::Line line(address, options_.listen_only);
+    auto opened = std::exchange(open_lines_[address.name], {}).line;
+    const bool is_open = opened != nullptr;  // Then nobody asks to open it again.
+    if (!is_open) opened = std::make_shared<lines::Line>(address, options_.listen_only);
+    lines::Line& line = *opened;
     source_.format = format_name(line.format());
     ReaderOptions reader_options{.direction = Direction::kOutbound, .interface_name = address.name};
     while (!lines::stop_requested() && !result_.stopped) {
       const std::unique_ptr<Reader> reader = make_reader(line.format(), reader_options);
       try {
-        line.open(std::chrono::steady_clock::now() + kReconnectEvery);
+        if (!is_open) line.open(std::chrono::steady_clock::now() + kReconnectEvery);
         if (std::exchange(lost_, false)) text::print(stderr, "rubric: {}: again\n", address.name);
         pump_line(line, *reader);
       } catch (const lines::Broken& broken) {
@@ -161,9 +164,11 @@ class Run {
     result_.live = true;
     source_.format = "zep";
     const std::vector<Interface> interfaces = {{address.name, {}, 0, 1'000'000, 0}};
-    lines::Air air(address.at);
+    const auto before = std::exchange(open_lines_[address.name], {}).air;
+    const auto opened = before ? before : std::make_shared<lines::Air>(address.at);
+    lines::Air& air = *opened;
     try {
-      air.open();
+      if (!before) air.open();
       if (address.at.port == 0) text::print(stderr, "rubric: zep:{}\n", air.port());
       while (!lines::stop_requested() && !result_.stopped) {
         const Bytes datagram = air.receive(std::chrono::steady_clock::now() + kAirPatience);
@@ -456,6 +461,7 @@ class Run {
   const OnIdle& on_idle_;
   const OtherText& other_;
   const std::vector<std::string> files_;
+  std::map<std::string, OpenLine> open_lines_ = options_.open_lines;
   std::unique_ptr<std::uint8_t[]> chunk_;
   Progress progress_;
   Source source_;
@@ -524,9 +530,23 @@ bool goes_on(const InputOptions& options) {
   });
 }
 
-void require_inputs(const InputOptions& options) {
+void open_sources(InputOptions& options) {
   for (const std::string& name : names_of(options)) {
-    if (name != "-" && !lines::parse_address(name)) require_file(name);
+    try {
+      const auto address = lines::parse_address(name);
+      if (!address && name != "-") require_file(name);
+      if (!address || options.reconnect) continue;
+      OpenLine& open = options.open_lines[name];
+      if (address->kind == lines::Address::Kind::kAir) {
+        open.air = std::make_shared<lines::Air>(address->at);
+        open.air->open();
+      } else {
+        open.line = std::make_shared<lines::Line>(*address, options.listen_only);
+        open.line->open(std::chrono::steady_clock::now() + kReconnectEvery);
+      }
+    } catch (const lines::Broken& broken) {
+      unreadable(name + ": " + broken.what());
+    }
   }
 }
 

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <functional>
+#include <map>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,7 +13,18 @@
 #include "codec/reflect/schema.h"
 #include "tools/cli/command.h"
 
+namespace rubric::lines {
+class Air;
+class Line;
+}  // namespace rubric::lines
+
 namespace rubric::cli {
+
+/// One of them: a line that was opened before its turn to be read.
+struct OpenLine {
+  std::shared_ptr<lines::Line> line;
+  std::shared_ptr<lines::Air> air;
+};
 
 /// Filled by add_input_options.
 struct InputOptions {
@@ -26,6 +39,7 @@ struct InputOptions {
   bool follow = false;             ///< At a file's end wait for more of it.
   bool listen_only = false;        ///< Write nothing to a serial line.
   bool reconnect = false;          ///< A line that is gone is opened again.
+  std::map<std::string, OpenLine> open_lines;  ///< By name, as from open_sources().
 };
 
 /// Adds FILE..., --spec, --as and those of add_capture_options() to a subcommand.
@@ -44,9 +58,9 @@ void add_live_options(Command& app, InputOptions& options);
 /// Returns whether the input goes on until somebody ends it: a line in use, a followed file, a
 /// pipe.
 bool goes_on(const InputOptions& options);
-/// Ends the command if a source is a file that cannot be opened: before an output replaces one that
-/// is good.
-void require_inputs(const InputOptions& options);
+/// Ends the command if a file cannot be read, or a line cannot be opened and will not be again:
+/// before an output replaces one that is good. The lines stay open until they are read.
+void open_sources(InputOptions& options);
 
 /// Returns all files that are read, "-" for stdin, and the one of --spec: no output may be one of
 /// them.

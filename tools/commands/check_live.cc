@@ -75,13 +75,16 @@ class Session {
  public:
   explicit Session(const CheckOptions& options)
       : options_(options),
+        input_(options.input),
         judged_(oracle_options(options)),
         expected_(expectations(options)),
         follow_(align_options(options), judged_, horizon_of(options, judged_)),
         watch_(kSettleUs + judged_.skew_us + judged_.response_us.value_or(kResponseUs)),
         news_(options) {
     name_files();
-    if (!options.write.path.empty()) kept_.emplace(options.write.path, options.write.growing());
+    if (options.write.path.empty()) return;
+    cli::open_sources(input_);
+    kept_.emplace(options.write.path, options.write.growing());
   }
 
   int run() {
@@ -89,7 +92,7 @@ class Session {
     news_.begin();
     bool failed = false;
     {
-      cli::InputThreads input(options_.input);
+      cli::InputThreads input(input_);
       while (input.take(steady_clock::now() + kTick, [this](auto&&... it) { take(it...); })) {
         if (fresh_ && steady_clock::now() >= judge_next_) judge();
         report_news();
@@ -172,6 +175,7 @@ class Session {
   }
 
   const CheckOptions& options_;
+  cli::InputOptions input_;
   const check::Options judged_;
   const report::KnownFailures expected_;
   check::Follow follow_;

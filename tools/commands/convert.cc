@@ -134,7 +134,7 @@ void settle_target(ConvertOptions& options) {
   }
   options.input.prints = options.output == "-";
   cli::keep_apart("OUT", options.output, options.input.files);
-  if (!options.input.prints) cli::require_inputs(options.input);
+  if (!options.input.prints) cli::open_sources(options.input);
 }
 
 int run_convert(const ConvertOptions& options) {

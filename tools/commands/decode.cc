@@ -210,10 +210,11 @@ class Decode {
         printer_(options, protocol_) {}
 
   int run() {
+    cli::InputOptions input = options_.input;
     if (!options_.write.path.empty()) {
-      const bool grows = cli::goes_on(options_.input);
-      cli::require_inputs(options_.input);
-      cli::check_write(options_.write, cli::all_inputs(options_.input), grows);
+      const bool grows = cli::goes_on(input);
+      cli::check_write(options_.write, cli::all_inputs(input), grows);
+      cli::open_sources(input);
       capture_.emplace(options_.write.path,
                        grows ? options_.write.growing() : lines::CaptureFile::Mode::kWhole,
                        cli::rotation_of(options_.write));
@@ -221,7 +222,7 @@ class Decode {
     printer_.begin(output_.buffer());
     if (const std::size_t count = threads_for(options_); count > 1) begin_threads(count);
     const cli::InputResult result = cli::read_packets(
-        options_.input,
+        input,
         [this](const Packet& packet, const cli::Source& source) { return take(packet, source); },
         [this] { output_.flush(); });
     if (threads_) threads_->finish();

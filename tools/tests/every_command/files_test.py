@@ -9,9 +9,11 @@ import shutil
 import signal
 import subprocess
 import sys
+import threading
 import time
 import unittest
 
+from live_testing import Forwarder
 from testing import RUBRIC, ROOT, Folder, run, run_unread
 
 FIRMWARE = ROOT / "spec/captures/firmware"
@@ -237,14 +239,23 @@ class Files(Folder):
         done = run("check", CAPTURE, "--report", out.parent, "--out", out)
         self.assertEqual(done.returncode, 64, done.stderr)
 
+    def line(self):
+        """A forwarder of one packet."""
+        forwarder = Forwarder(self)
+        packet = bytes([0, 0xFF, 0xFF, 0, 0, 4, 0, 6, 0, 1, 2, 3])
+        threading.Thread(target=lambda: forwarder.accept(bytes([len(packet)]) + packet).close(),
+                         daemon=True).start()
+        return f"sf@127.0.0.1:{forwarder.port}"
+
     def test_a_source_that_cannot_be_had_costs_no_file(self):
-        for source in ("sf@127.0.0.1:1", "serial@/nonexistent:telosb", "/nonexistent"):
+        for source in ("sf@127.0.0.1:1", "serial@/nonexistent:telosb", "/nonexistent", "/"):
             for words in (("decode", source, "--force", "--write"),
                           ("check", source, "--force", "--follow", "--write"),
                           ("forward", source, "--port", "0", "--force", "--write"),
                           ("convert", source, "-o"), ("encode", source, "-o"),
-                          ("decode", CAPTURE, "/nonexistent", "--force", "--write"),
-                          ("convert", CAPTURE, "/nonexistent", "-o")):
+                          ("decode", CAPTURE, source, "--force", "--write"),
+                          ("convert", CAPTURE, source, "-o"),
+                          ("check", CAPTURE, self.line(), source, "--force", "--write")):
                 for target in (self.old, self.folder / "new.pcapng"):
                     done = run(*words, target)
                     self.assertNotIn(done.returncode, (0, 1), words)
