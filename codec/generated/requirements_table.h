@@ -718,9 +718,9 @@ constexpr reflect::Requirement kRequirements[] = {
      "paper: Rubicon ACK; decision 111",
      reflect::kRoleMote | reflect::kRoleSink | reflect::kRoleBaseStation, true, ""},
     {"T2-CONTENT", "MUST", "transport, acks",
-     "An ack has TRANSID RUBICON_ACK, the APPID and the sequence number of the message, is "
-     "unreliable, and goes to the message's source.",
-     "paper: Rubicon ACK; decision 108",
+     "An ack has TRANSID RUBICON_ACK, the APPID and the sequence number of a message to the "
+     "node itself, is unreliable, and goes to the message's source.",
+     "paper: Rubicon ACK; decision 108; decision 111",
      reflect::kRoleMote | reflect::kRoleSink | reflect::kRoleBaseStation, true, ""},
     {"T2-DELIVER", "MUST", "transport, acks",
      "A reliable message is delivered to the application as well; a repeated one at least "

@@ -100,6 +100,14 @@ inline bool known_trans(std::uint8_t trans_id) {
          trans_id == component::kRubiconAck;
 }
 
+/// Returns whether the message's TRANSID or APPID is none that exists.
+inline bool is_nobodys(const Net& net) {
+  const auto unknown = [](std::uint8_t id) {
+    return id < component::kSynChannel || id > component::kEsnData;
+  };
+  return unknown(net.trans_id) || unknown(net.app_id);
+}
+
 /// Returns whether both are the same message of one sender on one link, whatever follows its
 /// content: an underlying buffer may be longer.
 inline bool same_content(const machine::Frame& a, const machine::Frame& b) {

@@ -17,7 +17,7 @@ struct CaseUse {
 };
 
 /// By file, then as they stand there; each case once for a rule and a sign.
-inline constexpr std::array<CaseUse, 2773> kCaseUses{{
+inline constexpr std::array<CaseUse, 2774> kCaseUses{{
     {"after_set_island.base_station",
      "conformance/cases/after_set_island.rtr", "N9-SET"_rule, false},
     {"after_set_island.base_station",
@@ -1785,6 +1785,7 @@ inline constexpr std::array<CaseUse, 2773> kCaseUses{{
     {"n7.radio", "conformance/cases/n7.rtr", "N7-RADIO"_rule, false},
     {"n7.radio", "conformance/cases/n7.rtr", "N7-CONTENT"_rule, false},
     {"n7.radio", "conformance/cases/n7.rtr", "N7-CONTENT"_rule, true},
+    {"n7.radio", "conformance/cases/n7.rtr", "T2-CONTENT"_rule, true},
     {"n7.radio", "conformance/cases/n7.rtr", "N7-RADIO"_rule, true},
     {"n7.radio_across", "conformance/cases/n7.rtr", "N7-RADIO"_rule, false},
     {"n7.radio_across", "conformance/cases/n7.rtr", "N7-CONTENT"_rule, false},

@@ -91,8 +91,8 @@ void send_ack(Node& node, Address to, std::uint8_t app_id, std::uint16_t seq_num
     rubicon::RubiconAckLayout::store(ack, body);
     size_bytes = sizeof body;
   }
-  //= T2-CONTENT: An ack has TRANSID RUBICON_ACK, the APPID and the sequence number of the message,
-  //= is unreliable, and goes to the message's source.
+  //= T2-CONTENT: An ack has TRANSID RUBICON_ACK, the APPID and the sequence number of a message to
+  //= the node itself, is unreliable, and goes to the message's source.
   ReqId refused = ReqId::kNone;
   send_own(node, {to, component::kRubiconAck, app_id, false, {body, size_bytes}, "T2-ACK"_rule},
            refused);

@@ -227,8 +227,8 @@ inline void Node::hear_connless(rubicon::NetMsgView message, uint8_t app_id, Byt
   ack.seq_num = message.seq_num();
   uint8_t body[rubicon::LearningNotificationView::kMaxSizeBytes];
   rubicon::LearningNotificationLayout::store(ack, body);
-  //= T2-CONTENT: An ack has TRANSID RUBICON_ACK, the APPID and the sequence number of the message,
-  //= is unreliable, and goes to the message's source.
+  //= T2-CONTENT: An ack has TRANSID RUBICON_ACK, the APPID and the sequence number of a message to
+  //= the node itself, is unreliable, and goes to the message's source.
   send_own({src, number(rubicon::Component::kRubiconAck), app_id, false, Bytes(body)});
 }
 

@@ -8,14 +8,6 @@
 namespace rubric::check {
 namespace {
 
-// Returns whether the message's TRANSID or APPID is none that exists.
-bool is_nobodys(const Net& net) {
-  const auto unknown = [](std::uint8_t id) {
-    return id < component::kSynChannel || id > component::kEsnData;
-  };
-  return unknown(net.trans_id) || unknown(net.app_id);
-}
-
 // Returns whether a message to the node is to be acked. If somebody sent it in the node's own name,
 // the ack would go to the node itself, and is not owed (decision 131).
 bool wants_ack(const Net& net) {
@@ -270,6 +262,9 @@ void Acks::refuse(std::uint16_t node, const Observation& seen, const Net& ack, s
       rule = "T2-UNRELIABLE"_rule;
       said.text = "It acks the serial_joined of " + text_of(ack.dest) + ".";
     }
+  } else if (best->passes_on()) {
+    said.text = acks + ", which is not for this node.";
+    said.expected = "An ack by its destination.";
   } else if (best->forbidden != ReqId::kNone) {
     rule = best->forbidden;
     if (best->weak) severity = Severity::kWeak;

@@ -71,6 +71,12 @@ struct Arrived {
   std::uint8_t copies = 1;
   std::uint8_t acks = 0;
   std::uint8_t delivered = 0;
+
+  /// Returns whether the node has only to pass it on, so that another one acks it.
+  bool passes_on() const {
+    return forbidden == "N6-DELIVER"_rule || forbidden == "N7-DELIVER"_rule ||
+           forbidden == "N8-DELIVER"_rule;
+  }
 };
 
 /// The facts about an arrival.

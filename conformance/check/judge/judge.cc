@@ -554,7 +554,12 @@ void Judge::down_serial(std::uint32_t index, const Observation& seen, const Mark
                     !interfaces_.switched_off(sink, machine::Link::kRadio);
   forwarding_.heard_on_serial(sink, mark.device, seen, net, {sure && able, sure, off, base.pid});
   const std::uint16_t am = who_.devices[sink].am;
-  if (net.dest.devid != am && net.dest.devid != machine::kBroadcastDevid) return;
+  if (net.dest.devid != am && net.dest.devid != machine::kBroadcastDevid) {
+    // To be sent on: only its destination acks it.
+    const bool ours = island != kNoIsland && net.dest.pid == island;
+    if (ours) acks_.arrived(sink, seen, mark.device, net, {.forbidden = "N7-DELIVER"_rule});
+    return;
+  }
   hears(sink, {Role::kSink, {island, am}, true, context_.sink_am}, machine::Link::kSerial, seen,
         mark.device, net, sure);
 }

@@ -265,6 +265,20 @@ const Fault kFaults[] = {
        net.trans_id = 99;
        s.net(420, 2, 3, net).net(430, 3, 2, ack);
      }},
+    {"acked_by_the_sink_on_the_way", "T2-CONTENT",
+     [](Script& s) {
+       const NetFields net = reliable({11, kNullDevid}, {11, 2}, 5);
+       NetFields ack = net.ack(6);
+       ack.src = {11, 1};
+       s.down(420, net).net(430, 1, 2, net, 11).up(435, ack);
+     }},
+    {"acked_by_the_base_station_on_the_way", "T2-CONTENT",
+     [](Script& s) {
+       const NetFields net = reliable({11, 2}, {12, 3}, 5);
+       NetFields ack = net.ack(6);
+       ack.src = {11, kNullDevid};
+       s.net(420, 2, 1, net).up(430, net).down(440, ack).net(450, 1, 2, ack, 11);
+     }},
     {"acked_twice", "T2-ONCE",
      [](Script& s) {
        const NetFields net = reliable({11, 2}, {11, 3}, 5);

@@ -135,6 +135,7 @@ Json implementation_json(const ImplementationRun& run) {
           {"outside", std::move(outside)},
           {"own_line", run.identity.own_line},
           {"wall_ms", run.wall_ms},
+          {"advice", advice(run)},
           {"counts", counts(count(run))}};
 }
 

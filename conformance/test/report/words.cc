@@ -1,12 +1,16 @@
 #include "conformance/test/report/words.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <optional>
+#include <set>
+#include <utility>
 
 #include "codec/reflect/fault_text.h"
 #include "codec/text/shell.h"
+#include "codec/text/text.h"
 #include "conformance/test/report/log_lines.h"
 #include "conformance/trace/print.h"
 #include "conformance/trace/trace.h"
@@ -32,6 +36,45 @@ std::string asked_text(const runner::Failure& failure) {
   if (!asked) return {};
   return fmt::format("expected {} {} {} {}, but ", asked->node, trace::op_text(asked->op),
                      asked->link, trace::print(asked->message));
+}
+
+// Says how many cases can be decided where a part of the node's links is shown.
+std::string reach_text(const ImplementationRun& implementation) {
+  std::size_t played = 0;
+  std::size_t beyond = 0;
+  std::set<std::string> unseen;
+  for (const CaseRun& one : implementation.cases) {
+    played += one.result.verdict != runner::CaseVerdict::kSkip;
+    if (!is_beyond_reach(one)) continue;
+    ++beyond;
+    unseen.insert(one.result.unseen.begin(), one.result.unseen.end());
+  }
+  if (beyond == 0) return {};
+  return fmt::format(
+      "The attached links decide {} of {}; the others need {} as well (conformance/PORTING.md; "
+      "--app shows more of a node at its line).",
+      played - beyond, text::counted(played, "case"), fmt::join(unseen, ", "));
+}
+
+// Says how many cases fail by no more than what a radio's wait for its channel explains.
+std::string access_text(const ImplementationRun& implementation) {
+  std::size_t cases = 0;
+  runner::Ticks access = 0;
+  for (const CaseRun& one : implementation.cases) {
+    const std::vector<runner::Failure>& all = one.result.failures;
+    const auto explained = [](const runner::Failure& failure) {
+      return failure.channel_access > 0 || failure.implied;
+    };
+    const bool first = !all.empty() && all.front().channel_access > 0;
+    if (!first || !std::ranges::all_of(all, explained)) continue;
+    ++cases;
+    access = all.front().channel_access;
+  }
+  if (cases == 0) return {};
+  return fmt::format(
+      "{} only by times that a radio's wait for a free channel explains: if yours waits, state it, "
+      "with --state channel_access={} (decision 128).",
+      text::counted(cases, "case fails", "cases fail"), access);
 }
 
 }  // namespace
@@ -152,6 +195,14 @@ std::string outside_headline(const ImplementationRun& implementation) {
       [](const OutsideFault& a, const OutsideFault& b) { return a.broke < b.broke; });
   std::string out = outside_text(*gravest);
   if (all.size() > 1) out += fmt::format(" (and {} more)", all.size() - 1);
+  return out;
+}
+
+std::vector<std::string> advice(const ImplementationRun& implementation) {
+  std::vector<std::string> out;
+  for (std::string text : {reach_text(implementation), access_text(implementation)}) {
+    if (!text.empty()) out.push_back(std::move(text));
+  }
   return out;
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "conformance/test/suite/result.h"
 
@@ -40,6 +41,9 @@ bool broke_outside(const ImplementationRun& implementation);
 std::string outside_text(const OutsideFault& fault);
 /// Returns one line: the gravest of these, and the number of others; empty if there are none.
 std::string outside_headline(const ImplementationRun& implementation);
+/// Returns sentences on what would decide more, or let more pass, each once for all its cases:
+/// links that are not shown, and a radio's channel access that is not stated.
+std::vector<std::string> advice(const ImplementationRun& implementation);
 /// Returns the command that runs just this case again.
 std::string replay_command(const SuiteRun& run, const ImplementationRun& implementation,
                            const CaseRun& one);

@@ -44,6 +44,30 @@ std::set<std::string> variables_of(const Line& line) {
   return out;
 }
 
+Window with_channel_access(const Line& line, const Window& window, Ticks access) {
+  const auto moved = [&](Ticks end, const std::vector<trace::Term>& terms) {
+    std::int64_t out = end;
+    for (const trace::Term& term : terms) {
+      if (term.parameter == trace::ParameterId::kChannelAccess) out += term.factor * access;
+    }
+    return static_cast<Ticks>(std::max<std::int64_t>(out, 0));
+  };
+  return {moved(window.from, line.time.from_terms), moved(window.to, line.time.to_terms)};
+}
+
+std::vector<std::string> rules_of_stimulus(const trace::Case& one, const Line* stimulus,
+                                           std::string_view node) {
+  std::vector<std::string> before;
+  bool after = !stimulus;
+  for (const Line* line : one.lines()) {
+    after = after || line == stimulus;
+    if (line->node != node || line->requirements.empty()) continue;
+    if (after) return line->requirements;
+    before = line->requirements;
+  }
+  return before;
+}
+
 bool is_needed_later(const trace::Case& one, const Line& line) {
   const Names names = variables_of(line);
   const std::vector<const Line*> lines = one.lines();

@@ -447,6 +447,9 @@ class Run {
       // An output that differs broke the line when it came: what another line says of the same
       // output must not come first and take the blame.
       if (miss.time) result.failures.back().broken_at = *miss.time;
+      if (miss.outside) {
+        result.failures.back().channel_access = allowing_access(line, one.wide, *miss.outside);
+      }
       refusals_.blame(line, result.failures.back());
     }
     for (const Line* l : skipped_) allowed_.push_back({l, {names_lost(*l) ? 0 : since, now_}, 0});
@@ -463,6 +466,7 @@ class Run {
       fail(result, *one.line, one.window, output->time,
            fmt::format("at {} it emitted {}", output->time, node.text_of(*output)),
            node.evidence_of(*output));
+      result.failures.back().channel_access = allowing_access(*one.line, one.window, output->time);
     }
     std::stable_sort(
         result.failures.begin(), result.failures.end(), [](const Failure& a, const Failure& b) {
@@ -501,24 +505,21 @@ class Run {
     Failure& failure = result.failures.back();
     failure.crash = true;
     failure.node = stimulus_ ? stimulus_->node : nodes_.front().name();
-    failure.requirements = rules_of_stimulus(failure.node);
+    failure.requirements = rules_of_stimulus(case_, stimulus_, failure.node);
     if (failure.requirements.empty()) return;
     failure.suspected.assign(failure.requirements.begin() + 1, failure.requirements.end());
     failure.requirements.resize(1);
   }
 
-  // Returns the rules of what was given last: those of the first line after it that judges the
-  // node, else of the last one before it.
-  std::vector<std::string> rules_of_stimulus(std::string_view node) const {
-    std::vector<std::string> before;
-    bool after = !stimulus_;
-    for (const Line* line : case_.lines()) {
-      after = after || line == stimulus_;
-      if (line->node != node || line->requirements.empty()) continue;
-      if (after) return line->requirements;
-      before = line->requirements;
-    }
-    return before;
+  // Returns the channel access that allows what came then although the line, within `window`, does
+  // not; 0 if none does, or if the node states its own.
+  Ticks allowing_access(const Line& line, const Window& window, Ticks came) const {
+    const trace::NodeHeader* const node = scope_.node(line.node);
+    const bool stated = node && find(node->stated, trace::ParameterId::kChannelAccess);
+    if (stated || !trace::protocol().has_machine) return 0;
+    const Ticks access = profile_of(scope_).early_ticks;
+    const bool held = with_channel_access(line, window, access).holds(came);
+    return held == (line.op != Op::kMustNot) ? access : 0;
   }
 
   void fail(CaseResult& result, const Line& line, const Window& window, Ticks time,

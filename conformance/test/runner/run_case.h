@@ -54,6 +54,8 @@ struct Failure {
   std::string message = {};  ///< That of the line.
   /// What is wrong with one that came: the words of runner::Evidence. Empty if none came.
   std::set<std::string, std::less<>> symptom = {};
+  /// The channel access that allows what came, where the node states none; 0: none would.
+  Ticks channel_access = 0;
   /// Rules by which the reference machine did what the node did not, there or before.
   std::set<std::string> left_undone = {};
 

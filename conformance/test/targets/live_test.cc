@@ -113,7 +113,7 @@ std::vector<Expected> line_cases(const char* role, bool overacks) {
   if (!overacks) {
     return {{fmt::format("t2.{}_line", role), {}}, {fmt::format("t1.{}_line", role), {}}};
   }
-  return {{fmt::format("t2.{}_line", role), {"T2-UNRELIABLE", "T2-BROADCAST"}},
+  return {{fmt::format("t2.{}_line", role), {"T2-UNRELIABLE", "T2-BROADCAST", "T2-CONTENT"}},
           {fmt::format("t1.{}_line", role), {"T1-UNKNOWN"}}};
 }
 

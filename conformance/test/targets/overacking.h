@@ -11,8 +11,9 @@
 
 namespace rubric::targets {
 
-/// Acks whatever it hears on its serial line: unreliable messages, broadcasts, and messages of a
-/// TRANSID that nobody knows. (T2-UNRELIABLE, T2-BROADCAST, T1-UNKNOWN)
+/// Acks whatever it hears on its serial line: unreliable messages, broadcasts, what is for others,
+/// and messages of a TRANSID that nobody knows. (T2-UNRELIABLE, T2-BROADCAST, T2-CONTENT,
+/// T1-UNKNOWN)
 class Overacking : public runner::Machine {
  public:
   void start(const machine::Config& config) override {

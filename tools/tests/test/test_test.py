@@ -144,6 +144,18 @@ class Running(Folder):
         self.assertEqual(test("--target", "machine", "--state", "ack_timeout=2000", "--state",
                               "response=350")[0], 0)
 
+    def test_times_that_channel_access_explains(self):
+        """A verdict says so once, and names what to state; it stays what it is."""
+        few = ["--cases", "j8.fail", "--cases", "more_j.one_retry_a_period", "--quiet"]
+        for period, told in (("495", True), ("450", False), ("700", False)):
+            mote = self.mote_with("JOIN_PERIOD = 500", "JOIN_PERIOD = " + period)
+            code, out, _ = test("--target", mote, *few)
+            self.assertEqual(code, 1)
+            self.assertEqual("2 cases fail only by times that a radio's wait" in
+                             " ".join(out.split()), told, out)
+            self.assertEqual(test("--target", mote, "--state", "channel_access=30", *few)[0],
+                             0 if told else 1)
+
     def test_stated_values_that_a_case_is_not_for(self):
         out = test("--target", "machine", "--state", "join_requests=7", "--cases", "j8.*")[1]
         self.assertRegex(" ".join(out.split()),

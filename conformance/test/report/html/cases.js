@@ -78,6 +78,7 @@ function tile(implementation) {
       : words.length ? words : 'nothing was run'),
     implementation.incomplete && h('div', {}, `incomplete: ${implementation.incomplete}`),
     implementation.outside && h('div', {}, `outside of the cases: ${implementation.outside}`),
+    implementation.advice.map((one) => h('div', {}, one)),
     total > 0 && h('div', { class: 'soft' }, ruleWords(implementation.rules)),
     h('div', { class: 'soft' },
       `${implementation.roles.join(', ').replace('_', ' ') || 'no role'} \u00b7 ` +

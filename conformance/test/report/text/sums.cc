@@ -1,9 +1,7 @@
 // The text before and after the cases.
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <array>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -40,25 +38,6 @@ std::string rules_line(const ImplementationRun& implementation, const char* titl
     out += trace::requirement_text(rule.requirement);
   }
   return out.empty() ? out : wrapped(fmt::format("{}{}: ", kIndent, title), out, options.width);
-}
-
-// Says how many cases can be decided where a part of the node's links is shown.
-std::string reach_text(const ImplementationRun& implementation, const TextOptions& options) {
-  std::size_t played = 0;
-  std::size_t beyond = 0;
-  std::set<std::string> unseen;
-  for (const CaseRun& one : implementation.cases) {
-    played += one.result.verdict != CaseVerdict::kSkip;
-    if (!is_beyond_reach(one)) continue;
-    ++beyond;
-    unseen.insert(one.result.unseen.begin(), one.result.unseen.end());
-  }
-  if (beyond == 0) return {};
-  return wrapped(kIndent,
-                 fmt::format("The attached links decide {} of {}; the others need {} as well "
-                             "(conformance/PORTING.md; --app shows more of a node at its line).",
-                             played - beyond, counted(played, "case"), fmt::join(unseen, ", ")),
-                 options.width);
 }
 
 // Says how many cases the stated parameters leave.
@@ -150,7 +129,9 @@ std::string totals_text(const SuiteRun& run, const ImplementationRun& implementa
   if (!missing.empty())
     out += wrapped(fmt::format("{}Incomplete: ", kIndent), missing + '.', options.width);
   out += stated_text(implementation, options);
-  out += reach_text(implementation, options);
+  for (const std::string& one : advice(implementation)) {
+    out += wrapped(kIndent, one, options.width);
+  }
   out += outside(implementation, options);
   out += rules_line(implementation, "Broken", options,
                     [](const RequirementSummary& rule) { return rule.broken > 0; });

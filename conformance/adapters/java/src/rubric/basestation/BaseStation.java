@@ -256,8 +256,8 @@ public final class BaseStation {
         reliable ? "T2-DELIVER" : "T1-DELIVER"));
     //= T2-BROADCAST: A broadcast is not acked.
     if (!reliable || !Address.of(message.dest()).equals(address())) return;
-    //= T2-CONTENT: An ack has TRANSID RUBICON_ACK, the APPID and the sequence number of the
-    //= message, is unreliable, and goes to the message's source.
+    //= T2-CONTENT: An ack has TRANSID RUBICON_ACK, the APPID and the sequence number of a message
+    //= to the node itself, is unreliable, and goes to the message's source.
     sendOwn(src, Component.RUBICON_ACK, app.appId(), false, Messages.ack(message.seqNum()),
         "T2-ACK");
   }
