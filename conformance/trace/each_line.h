@@ -1,6 +1,7 @@
 // Reads .rtr text line by line: the log of a run may be far longer than its headers.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <string_view>
 
@@ -14,6 +15,13 @@ using TakeLine = std::function<void(const File& so_far, const Line& line)>;
 /// headers, without their notes. Gives `take` each line in their order, up to the first mistake. A
 /// header that comes too late, behind lines of its case, says nothing of those.
 Parsed each_line(std::string_view text, std::string_view file_name, const TakeLine& take);
+
+/// Reads again, without checking it, a case of a file that was right. `text` is that case alone,
+/// from line `number` of the file on: what is parsed takes many times the memory of its text, so a
+/// file of many cases is kept as text.
+Case case_of(std::string_view text, std::uint32_t number);
+/// Gives `take` the lines of such a case, and keeps nothing.
+void lines_of(std::string_view text, const std::function<void(const Line&)>& take);
 
 /// Is told of the cases of a file while they are read.
 class Listener {

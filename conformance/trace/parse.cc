@@ -184,13 +184,13 @@ class Parser {
   /// Lines are told to `listener`, if there is one; else they are kept.
   explicit Parser(Parsed& out, Listener* listener = nullptr) : out_(out), listener_(listener) {}
 
-  void run(std::string_view text) {
+  /// `number`: of the line before, in the file.
+  void run(std::string_view text, std::uint32_t number = 0) {
     if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
     std::size_t cases = 0;
     if (!listener_) out_.file.head.reserve(items_until_case(text));
     for (std::string_view rest = text; !rest.empty();) cases += is_case(take_line(rest));
     out_.file.cases.reserve(cases);
-    std::uint32_t number = 0;
     for (rest_ = text; !rest_.empty();) {
       std::string_view line = take_line(rest_);
       if (line.ends_with('\r')) line.remove_suffix(1);
@@ -316,6 +316,18 @@ class CheckedLines : public Listener {
   const TakeLine& take_;
 };
 
+/// Passes lines on.
+class LinesAlone : public Listener {
+ public:
+  explicit LinesAlone(const std::function<void(const Line&)>& take) : take_(take) {}
+  void begin(const Case&) override {}
+  void header(const Header&) override {}
+  void line(const Line& one) override { take_(one); }
+
+ private:
+  const std::function<void(const Line&)>& take_;
+};
+
 void sort_diagnostics(Parsed& parsed) {
   std::stable_sort(parsed.diagnostics.begin(), parsed.diagnostics.end(),
                    [](const Diagnostic& a, const Diagnostic& b) {
@@ -359,6 +371,18 @@ Parsed each_line(std::string_view text, std::string_view file_name, const TakeLi
   });
   sort_diagnostics(parsed);
   return parsed;
+}
+
+Case case_of(std::string_view text, std::uint32_t number) {
+  Parsed parsed;
+  Parser(parsed).run(text, number - 1);
+  return std::move(parsed.file.cases.front());
+}
+
+void lines_of(std::string_view text, const std::function<void(const Line&)>& take) {
+  Parsed parsed;
+  LinesAlone lines(take);
+  Parser(parsed, &lines).run(text);
 }
 
 Case parse_lines(std::string_view text) {

@@ -154,7 +154,7 @@ Coverage read_protocol_cases(const std::vector<std::string>& traces) {
   Coverage coverage;
   const suite::Cases cases = suite::Cases::of(traces);
   for (const suite::SuiteCase& one : cases.all()) {
-    read_case(one.file->file_name, *one.one, coverage);
+    read_case(one.file->file_name, one.whole(), coverage);
   }
   judge(coverage);
   return coverage;

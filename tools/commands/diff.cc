@@ -53,7 +53,7 @@ void compare(DiffOptions options) {
   }
   std::vector<trace::File> files;
   for (const suite::SuiteCase& each : suite::select(cases, options.selection)) {
-    files.push_back(seeded(each.file->file, *each.one, options.shared));
+    files.push_back(seeded(each.file->file, each.whole(), options.shared));
   }
   std::vector<const trace::File*> pointers;
   for (const trace::File& file : files) pointers.push_back(&file);

@@ -59,9 +59,9 @@ std::vector<const Protocol*> layers(const Protocol& protocol) {
 std::vector<cases::CaseUse> uses_in(const suite::Cases& cases) {
   std::vector<cases::CaseUse> out;
   for (const suite::SuiteCase& one : cases.all()) {
-    for (const trace::Line* line : one.one->lines()) {
-      const bool negative = line->op == trace::Op::kMustNot;
-      for (const std::string& rule : line->requirements) {
+    one.each_line([&](const trace::Line& line) {
+      const bool negative = line.op == trace::Op::kMustNot;
+      for (const std::string& rule : line.requirements) {
         const cases::CaseUse use{one.one->name.c_str(), one.file->file_name.c_str(),
                                  trace::requirement_id(rule), negative};
         const bool known = std::ranges::any_of(out, [&](const cases::CaseUse& other) {
@@ -70,7 +70,7 @@ std::vector<cases::CaseUse> uses_in(const suite::Cases& cases) {
         });
         if (!known) out.push_back(use);
       }
-    }
+    });
   }
   return out;
 }

@@ -61,7 +61,7 @@ std::optional<Failing> find_failing(const suite::Cases& cases, const ShrinkOptio
                                     const shrink::Player& player) {
   for (const suite::SuiteCase& each : cases.all()) {
     if (!options.case_name.empty() && each.one->name != options.case_name) continue;
-    trace::File file = seeded(each.file->file, *each.one, options.shared);
+    trace::File file = seeded(each.file->file, each.whole(), options.shared);
     CaseResult result = shrink::play(file, player);
     if (fails(result)) return Failing{std::move(file), std::move(result)};
   }

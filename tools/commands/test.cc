@@ -153,28 +153,29 @@ std::vector<suite::SuiteCase> selected(const TestOptions& options, const suite::
   }
 }
 
-std::string list_text(const std::vector<suite::SuiteCase>& cases) {
-  std::string out;
-  for (const suite::SuiteCase& one : cases) {
-    std::string roles;
-    for (const machine::Role role : one.roles()) {
-      if (!roles.empty()) roles += '+';
-      roles += trace::role_text(static_cast<trace::Role>(role));
-    }
-    std::string line = fmt::format("{:<40} {:<12}", one.one->name, roles);
-    for (const std::string& rule : one.rules()) line += ' ' + rule;
-    line.erase(line.find_last_not_of(' ') + 1);
-    out += line + '\n';
+std::string list_line(const suite::SuiteCase& one) {
+  std::string roles;
+  for (const machine::Role role : one.roles()) {
+    if (!roles.empty()) roles += '+';
+    roles += trace::role_text(static_cast<trace::Role>(role));
   }
-  return out;
+  std::string line = fmt::format("{:<40} {:<12}", one.one->name, roles);
+  for (const std::string& rule : one.rules()) line += ' ' + rule;
+  line.erase(line.find_last_not_of(' ') + 1);
+  return line + '\n';
 }
 
 int list(const TestOptions& options, const std::vector<suite::SuiteCase>& cases) {
   if (options.format != "text" && options.format != "json") {
     throw cli::UsageError("--list", "prints text or json, no " + options.format);
   }
-  const std::string text = options.format == "json" ? suite::json_list(cases) : list_text(cases);
-  return cli::write_file(options.out, text) ? cli::kExitClean : cli::kExitOutput;
+  cli::Output output(options.out, cli::Output::Mode::kWhole);
+  if (options.format == "json") output.buffer().append(suite::json_list(cases));
+  for (std::size_t i = 0; options.format == "text" && i < cases.size(); ++i) {
+    output.buffer().append(list_line(cases[i]));
+    if (!output.drain()) break;
+  }
+  return output.finish() ? cli::kExitClean : cli::kExitOutput;
 }
 
 void check_seeds(const TestOptions& options) {

@@ -348,7 +348,7 @@ class Chart {
 MachineRun run_on_machine(const SuiteCase& one) {
   MachineRun out{.run = one.blank()};
   out.run.result =
-      runner::run_case(one.file->file, *one.one,
+      runner::run_case(one.file->file, one.whole(),
                        [&](const trace::NodeHeader& node) -> std::unique_ptr<runner::Target> {
                          return std::make_unique<Watched>(out.reactions[node.name]);
                        });

@@ -174,7 +174,8 @@ std::string list_to_begin_with(const Cases& cases, machine::Role role) {
   for (const SuiteCase& one : cases.all()) {
     const CaseRun blank = one.blank();
     if (blank.roles != std::vector{role}) continue;
-    const std::vector<const trace::Line*> lines = one.one->lines();
+    const trace::Case whole = one.whole();
+    const std::vector<const trace::Line*> lines = whole.lines();
     const auto call = std::find_if(lines.begin(), lines.end(), [&](const trace::Line* line) {
       return is_given_call(blank.nodes, *line);
     });

@@ -11,7 +11,7 @@
 
 namespace rubric::runner {
 
-std::vector<trace::Parsed> load_cases(const std::filesystem::path& folder) {
+std::vector<std::filesystem::path> case_paths(const std::filesystem::path& folder) {
   if (!std::filesystem::is_directory(folder)) {
     throw std::runtime_error(folder.string() + ": no such folder; golden traces are in " +
                              "conformance/cases of the project");
@@ -22,9 +22,13 @@ std::vector<trace::Parsed> load_cases(const std::filesystem::path& folder) {
   }
   if (paths.empty()) throw std::runtime_error(folder.string() + ": no .rtr file");
   std::sort(paths.begin(), paths.end());
+  return paths;
+}
+
+std::vector<trace::Parsed> load_cases(const std::filesystem::path& folder) {
   std::vector<trace::Parsed> files;
   std::string errors;
-  for (const auto& path : paths) {
+  for (const auto& path : case_paths(folder)) {
     std::string text;
     if (const int code = text::read_file(path, text)) {
       errors += fmt::format("{}: {}\n", text::harmless(path.generic_string()), std::strerror(code));

@@ -53,7 +53,7 @@ bool plays(const targets::Identity& identity, machine::Role role) {
 std::string try_canary(const SuiteCase& one, targets::Attachment& attachment) {
   using runner::CaseVerdict;
   const runner::CaseResult result = runner::run_case(
-      one.file->file, *one.one, [&](const trace::NodeHeader&) { return attachment.target(); });
+      one.file->file, one.whole(), [&](const trace::NodeHeader&) { return attachment.target(); });
   for (const runner::Failure& failure : result.failures) {
     if (!failure.crash || !failure.text.starts_with("unsupported `until")) continue;
     return fmt::format("it does not speak rct/{}, where time passes for all nodes: {}",

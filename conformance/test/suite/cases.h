@@ -1,11 +1,11 @@
 // The golden traces of a suite: the kit's own, which the program contains, or the user's files.
 #pragma once
 
-#include <cstddef>
+#include <cstdint>
+#include <functional>
 #include <list>
 #include <string>
 #include <string_view>
-#include <unordered_map>
 #include <vector>
 
 #include "conformance/test/suite/result.h"
@@ -16,8 +16,13 @@ namespace rubric::suite {
 /// A golden trace and its properties before it is run.
 struct SuiteCase {
   const trace::Parsed* file = nullptr;
-  const trace::Case* one = nullptr;
+  const trace::Case* one = nullptr;  ///< Its headers alone where there is `text`.
+  std::string_view text = {};        ///< Of the case, as it is in the file; empty: `one` is whole.
 
+  /// Returns it with its lines.
+  trace::Case whole() const;
+  /// Gives `take` its lines, without keeping them.
+  void each_line(const std::function<void(const trace::Line&)>& take) const;
   /// Returns what is known before it is run.
   CaseRun blank() const;
   /// Returns the roles of its nodes under test, each once.
@@ -34,8 +39,8 @@ class Cases {
   Cases& operator=(Cases&&) = default;
   /// Returns the cases of conformance/cases as they were when the program was built.
   static Cases own();
-  /// Reads .rtr files, and folders of them. Throws std::runtime_error with what is wrong, by file,
-  /// line and column.
+  /// Reads .rtr files, and folders of them, and keeps their text. Throws std::runtime_error with
+  /// what is wrong, by file, line and column.
   static Cases of(const std::vector<std::string>& paths);
   /// Reads the text of one file.
   static Cases of_text(std::string_view text, const std::string& file_name);
@@ -46,11 +51,13 @@ class Cases {
   const SuiteCase* find(std::string_view name) const;
 
  private:
-  void add(trace::Parsed file);
+  std::string add_text(std::string text, std::string_view file_name);
+  void add(trace::Parsed file, std::string_view text);
 
-  std::list<trace::Parsed> files_;  // Cases point into them.
+  std::list<std::string> texts_;    // Cases point into them,
+  std::list<trace::Parsed> files_;  // and into these.
   std::vector<SuiteCase> cases_;
-  std::unordered_map<std::string_view, std::size_t> places_;  // By name.
+  std::vector<std::uint32_t> by_name_;  // Their places in cases_.
 };
 
 /// A golden trace as text, under its path in the project. Generated when the program is built.

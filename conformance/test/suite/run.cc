@@ -115,7 +115,7 @@ CaseRun run_one(const SuiteCase& one, targets::Attachment& attachment, const std
   out.result.name = out.name;
   trace::File head;  // One case as a file.
   head.head = one.file->file.head;
-  trace::Case itself = *one.one;
+  trace::Case itself = one.whole();
   if (!profile.empty()) {
     trace::set_header(head, itself, trace::ProfileHeader{profile});
     out.profile = profile;

@@ -94,6 +94,7 @@ std::vector<SuiteCase> select(const Cases& cases, const Selection& selection) {
   for (const std::string& glob : selection.excepted) check_glob(cases, glob);
   for (const std::string& rule : selection.requirements) check_requirement(cases, rule);
   std::vector<SuiteCase> chosen;
+  chosen.reserve(cases.all().size() / selection.shard.count + 1);
   std::size_t taken = 0;
   for (const SuiteCase& one : cases.all()) {
     if (!takes(selection, one)) continue;
