@@ -45,6 +45,10 @@ std::vector<machine::Role> roles_of(const std::vector<trace::NodeHeader>& nodes)
   return out;
 }
 
+std::string place_of(const SuiteCase& one) {
+  return fmt::format("{}:{}: case {}", one.file->file_name, one.one->place.line, one.one->name);
+}
+
 // Returns the comment lines at the begin of a case, after the one that names it.
 std::string_view beginning(std::string_view text) {
   std::size_t end = text.find('\n');
@@ -105,6 +109,7 @@ Cases Cases::own() {
     if (!file.ok()) throw std::logic_error(file.errors());
     out.add(std::move(file), {});
   }
+  out.sort_names();
   return out;
 }
 
@@ -124,6 +129,7 @@ Cases Cases::of(const std::vector<std::string>& paths) {
     }
     if (!errors.empty()) throw std::runtime_error(errors);
   }
+  out.sort_names();
   return out;
 }
 
@@ -131,6 +137,7 @@ Cases Cases::of_text(std::string_view text, const std::string& file_name) {
   Cases out;
   const std::string errors = out.add_text(std::string(text), file_name);
   if (!errors.empty()) throw std::runtime_error(errors);
+  out.sort_names();
   return out;
 }
 
@@ -163,26 +170,27 @@ void Cases::add(trace::Parsed file, std::string_view text) {
   };
   const std::vector<trace::Case>& all = kept.file.cases;
   if (!text.empty() && !all.empty()) cut_before(all.front().place.line);
-  cases_.reserve(cases_.size() + all.size());
-  const auto place = [](const SuiteCase& one) {
-    return fmt::format("{}:{}: case {}", one.file->file_name, one.one->place.line, one.one->name);
-  };
+  if (cases_.empty()) cases_.reserve(all.size());
   for (const trace::Case& one : all) {
     SuiteCase added{&kept, &one};
     if (!text.empty()) added.text = &one == &all.back() ? text : cut_before((&one)[1].place.line);
     if (added.roles().empty()) {
-      throw std::runtime_error(place(added) + " has no node under test (iut)");
+      throw std::runtime_error(place_of(added) + " has no node under test (iut)");
     }
     by_name_.push_back(static_cast<std::uint32_t>(cases_.size()));
     cases_.push_back(added);
   }
+}
+
+// Throws if two cases have one name.
+void Cases::sort_names() {
   const auto name = [this](std::uint32_t at) { return std::string_view(cases_[at].one->name); };
   std::ranges::stable_sort(by_name_, {}, name);
   const auto twin = std::ranges::adjacent_find(by_name_, {}, name);
   if (twin == by_name_.end()) return;
   const SuiteCase& other = cases_[*twin];
   throw std::runtime_error(fmt::format("{}: the name is also in {}, line {}",
-                                       place(cases_[twin[1]]), other.file->file_name,
+                                       place_of(cases_[twin[1]]), other.file->file_name,
                                        other.one->place.line));
 }
 

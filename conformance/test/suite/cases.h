@@ -53,6 +53,7 @@ class Cases {
  private:
   std::string add_text(std::string text, std::string_view file_name);
   void add(trace::Parsed file, std::string_view text);
+  void sort_names();
 
   std::list<std::string> texts_;    // Cases point into them,
   std::list<trace::Parsed> files_;  // and into these.
