@@ -7,7 +7,6 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <filesystem>
 
 #include "codec/text/text.h"
 #include "tools/cli/command.h"
@@ -84,22 +83,6 @@ void keep_apart(const std::string& option, const std::string& output,
   const bool clash =
       files.empty() ? is_output("-") : std::any_of(files.begin(), files.end(), is_output);
   if (clash) throw UsageError(option, output + " is also an input or another output");
-}
-
-void keep_report_apart(const std::string& folder, const std::vector<std::string>& files) {
-  if (folder.empty()) return;
-  const std::filesystem::path to(folder);
-  for (const char* name : {"index.html", "report.json", "junit.xml", "report.tap"}) {
-    keep_apart("--report", (to / name).native(), files);
-  }
-  std::error_code none;
-  for (const std::string& file : files) {
-    const std::filesystem::path folders = std::filesystem::weakly_canonical(file, none);
-    if (folders.parent_path().parent_path() ==
-        std::filesystem::weakly_canonical(to / "cases", none)) {
-      throw UsageError("--report", file + " is where the report puts its cases");
-    }
-  }
 }
 
 }  // namespace rubric::cli

@@ -66,7 +66,5 @@ int cannot_write(const std::system_error& error);
 /// link; none of them, or "-", is stdin. An `output` of "-" is stdout, an empty one nothing.
 void keep_apart(const std::string& option, const std::string& output,
                 const std::vector<std::string>& files);
-/// The same for what --report writes into its folder.
-void keep_report_apart(const std::string& folder, const std::vector<std::string>& files);
 
 }  // namespace rubric::cli

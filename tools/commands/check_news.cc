@@ -90,9 +90,9 @@ bool write_report_folder(const CheckOptions& options, const report::Story& story
   text.command.clear();
   try {
     suite::ReportFolder folder(options.report);
-    folder.write("index.html", report::html_report(story, text, suite::kStyle));
-    folder.write("report.json", report::json_report(story).text() + '\n');
-    folder.write("junit.xml", report::junit_report(story));
+    folder.write(suite::ReportFolder::kPage, report::html_report(story, text, suite::kStyle));
+    folder.write(suite::ReportFolder::kJson, report::json_report(story).text() + '\n');
+    folder.write(suite::ReportFolder::kJunit, report::junit_report(story));
     folder.finish();
     return true;
   } catch (const std::system_error& error) {

@@ -15,6 +15,7 @@
 #include "tools/cli/color.h"
 #include "tools/cli/terminal.h"
 #include "tools/cli/verdict.h"
+#include "tools/commands/report_folder.h"
 #include "tools/commands/stated.h"
 
 namespace rubric::tools {
@@ -109,7 +110,7 @@ void keep_outputs_apart(const CheckOptions& options) {
   cli::keep_apart("--out", options.out, inputs);
   cli::keep_apart("--write", options.write.path, inputs);
   inputs.insert(inputs.end(), {options.out, options.write.path});
-  cli::keep_report_apart(options.report, inputs);
+  keep_report_apart(options.report, inputs);
 }
 
 std::vector<report::FrameRange> frame_ranges(const CheckOptions& options) {

@@ -35,6 +35,7 @@
 #include "tools/cli/verdict.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/protocol_folder.h"
+#include "tools/commands/report_folder.h"
 #include "tools/commands/stated.h"
 
 namespace rubric::tools {
@@ -268,9 +269,9 @@ bool write_folder(const TestOptions& options, const suite::SuiteRun& run,
   try {
     suite::ReportFolder folder(options.report);
     suite::write_html_report(run, earlier ? &*earlier : nullptr, folder);
-    folder.write("report.json", suite::json_report(run));
-    folder.write("junit.xml", suite::junit_report(run));
-    folder.write("report.tap", suite::tap_report(run));
+    folder.write(suite::ReportFolder::kJson, suite::json_report(run));
+    folder.write(suite::ReportFolder::kJunit, suite::junit_report(run));
+    folder.write(suite::ReportFolder::kTap, suite::tap_report(run));
     folder.finish();
     return true;
   } catch (const std::system_error& error) {
@@ -323,7 +324,7 @@ int run_test(TestOptions options) {
   }
   std::vector<std::string> files = options.traces;
   files.insert(files.end(), {options.expect, options.out, options.write_expect});
-  cli::keep_report_apart(options.report, files);
+  keep_report_apart(options.report, files);
   plan.cases = selected(options, cases);
   if (options.list) return list(options, plan.cases);
   if (options.targets.empty()) throw cli::UsageError("--target is required");

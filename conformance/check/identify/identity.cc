@@ -6,7 +6,9 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <unordered_map>
 #include <utility>
+#include <vector>
 
 #include "conformance/check/identify/serial_lines.h"
 #include "conformance/check/identify/streams.h"
@@ -60,8 +62,10 @@ class Identifier {
   }
 
   std::uint16_t add(Device device) {
+    const auto number = static_cast<std::uint16_t>(out_.devices.size());
+    devices_of_[device.am].push_back(number);
     out_.devices.push_back(std::move(device));
-    return static_cast<std::uint16_t>(out_.devices.size() - 1);
+    return number;
   }
 
   void add_logged(const LoggedNode& node) {
@@ -349,16 +353,18 @@ class Identifier {
   // the stream begins, if there is any.
   std::uint16_t earlier_device(const Stream& stream) const {
     std::uint16_t found = kNobody;
-    for (std::size_t i = 0; i < out_.devices.size(); ++i) {
+    const auto of_this = devices_of_.find(stream.am);
+    if (of_this == devices_of_.end()) return found;
+    for (const std::uint16_t i : of_this->second) {
       const Device& device = out_.devices[i];
-      if (!device.known || device.am != stream.am || device.role == Role::kBaseStation) continue;
+      if (!device.known || device.role == Role::kBaseStation) continue;
       if (device.role != role_of(stream)) continue;
       const bool same_island = device.island == stream.first_island || device.island == kNoIsland ||
                                stream.first_island == kNoIsland ||
                                last_island(device) == stream.first_island;
       if (stream.sink && !same_island) continue;
-      if (follows(stream, static_cast<std::uint16_t>(i))) return static_cast<std::uint16_t>(i);
-      found = static_cast<std::uint16_t>(i);
+      if (follows(stream, i)) return i;
+      found = i;
     }
     return found;
   }
@@ -366,17 +372,15 @@ class Identifier {
   // Returns the sink, silent since then, whose own line says that it is of this stream's island: it
   // has an island that nobody saw before, as after it lost its power.
   std::uint16_t device_before_move(const Stream& stream) const {
-    for (std::size_t i = 0; i < out_.devices.size() && stream.sink; ++i) {
+    const auto of_this = devices_of_.find(stream.am);
+    if (of_this == devices_of_.end() || !stream.sink) return kNobody;
+    for (const std::uint16_t i : of_this->second) {
       const Device& device = out_.devices[i];
-      if (!device.known || !device.radio || device.am != stream.am || device.role != Role::kSink) {
-        continue;
-      }
+      if (!device.known || !device.radio || device.role != Role::kSink) continue;
       const bool silent = device.last_us <= stream.first_us;
       const bool moved =
           lines_.alone_reports(device.island, stream.first_island, !options_.start_cold);
-      if (silent && moved && device.island != stream.first_island) {
-        return static_cast<std::uint16_t>(i);
-      }
+      if (silent && moved && device.island != stream.first_island) return i;
     }
     return kNobody;
   }
@@ -517,6 +521,7 @@ class Identifier {
   Streams streams_;
   SerialLines lines_;
   Identity out_;
+  std::unordered_map<std::uint16_t, std::vector<std::uint16_t>> devices_of_;  // By AM address.
   std::map<std::uint32_t, std::uint16_t> logged_sink_;  // User of a tap, by a log.
   std::map<std::uint32_t, std::uint16_t> logged_host_;  // The base station at its other end.
   std::set<std::uint16_t> reboots_;  // Nodes whose log tells that they started anew.

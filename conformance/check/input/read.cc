@@ -179,48 +179,70 @@ void leave_out_networks(Run& run) {
   }
 }
 
-// Takes the stamps of a capture that only tell the second, or its tenth, for none: most frames
-// share theirs with the one before, and what lies between two is not known. Of finer ones that
-// show a grid, as frames share them and all of them are whole steps apart, notes how wide it is.
-void leave_out_coarse_stamps(Run& run) {
-  constexpr std::int64_t kCoarseUs = 100'000;
+// Returns whether a capture's recorder stamped the frame.
+bool is_stamped(const Observation& seen) {
+  return seen.node.empty() && seen.place.time_us != kNoStamp;
+}
+
+// Notes how wide the grid of the stamps is, where frames share them and all of them are whole steps
+// apart.
+void find_grid(Run& run) {
   constexpr std::int64_t kFineUs = 1'000;  // A finer grid is within what timers may be off.
   constexpr std::size_t kManyStamps = 8;   // Fewer may be whole steps apart by chance.
   struct Stamps {
     std::int64_t last_us = kNoStamp;
-    std::int64_t grid_us = 0;
-    std::size_t frames = 0;
-    std::size_t same = 0;
-    bool coarse = true;
+    std::int64_t grid_us = 0;  // 0: all are the same; no more than kFineUs: fine.
+    std::size_t several = 0;   // Other ones than before.
+    bool shared = false;
   };
-  std::vector<Stamps> files(run.files.size());
   std::vector<Stamps> taps(run.taps.size());
   for (const Observation& seen : run.seen) {
+    if (!is_stamped(seen)) continue;
+    Stamps& of = taps[seen.tap];
     const std::int64_t time_us = seen.place.time_us;
-    if (!seen.node.empty() || time_us == kNoStamp) continue;
-    for (Stamps* const of : {&files[seen.place.file], &taps[seen.tap]}) {
-      of->coarse = of->coarse && time_us % kCoarseUs == 0;
-      if (of->frames++ > 0) of->grid_us = std::gcd(of->grid_us, time_us - of->last_us);
-      of->same += time_us == of->last_us ? 1 : 0;
-      of->last_us = time_us;
-    }
-  }
-  const auto coarse = [](const Stamps& file) { return file.coarse && 2 * file.same > file.frames; };
-  for (Observation& seen : run.seen) {
-    if (seen.node.empty() && coarse(files[seen.place.file])) seen.place.time_us = kNoStamp;
-  }
-  for (std::size_t i = 0; i < files.size(); ++i) {
-    if (!coarse(files[i])) continue;
-    run.facts.push_back(run.files[i] +
-                        " has stamps of whole seconds or tenths, which are left out");
+    const bool fine = of.grid_us != 0 && of.grid_us <= kFineUs;
+    if (of.several != 0 && !fine) of.grid_us = std::gcd(of.grid_us, time_us - of.last_us);
+    of.shared = of.shared || time_us == of.last_us;
+    of.several += time_us == of.last_us ? 0 : 1;
+    of.last_us = time_us;
   }
   for (const Stamps& tap : taps) {
-    if (tap.same == 0 || tap.frames - tap.same < kManyStamps || tap.grid_us <= kFineUs) continue;
+    if (!tap.shared || tap.several < kManyStamps || tap.grid_us <= kFineUs) continue;
     run.grid_us = std::max(run.grid_us, tap.grid_us);
   }
   if (run.grid_us == 0) return;
   run.facts.push_back("stamps are whole steps of " + std::to_string(run.grid_us) +
                       " us apart; what passed between two frames may differ by one");
+}
+
+// Takes the stamps of a capture that only tell the second, or its tenth, for none: most frames
+// share theirs with the one before, and what lies between two is not known.
+void leave_out_coarse_stamps(Run& run) {
+  constexpr std::int64_t kCoarseUs = 100'000;
+  struct Stamps {
+    std::int64_t last_us = kNoStamp;
+    std::size_t frames = 0;
+    std::size_t same = 0;
+    bool whole = true;
+    bool coarse() const { return whole && 2 * same > frames; }
+  };
+  std::vector<Stamps> files(run.files.size());
+  for (const Observation& seen : run.seen) {
+    if (!is_stamped(seen)) continue;
+    Stamps& of = files[seen.place.file];
+    of.whole = of.whole && seen.place.time_us % kCoarseUs == 0;
+    ++of.frames;
+    of.same += seen.place.time_us == of.last_us ? 1 : 0;
+    of.last_us = seen.place.time_us;
+  }
+  for (Observation& seen : run.seen) {
+    if (seen.node.empty() && files[seen.place.file].coarse()) seen.place.time_us = kNoStamp;
+  }
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    if (!files[i].coarse()) continue;
+    run.facts.push_back(run.files[i] +
+                        " has stamps of whole seconds or tenths, which are left out");
+  }
 }
 
 // Makes times count from `begin_us`, else from the first one, and orders what several taps saw.
@@ -232,6 +254,7 @@ Run in_one_order(Run run, const AlignOptions& options, std::optional<std::int64_
     std::stable_sort(run.seen.begin(), run.seen.end(), by_file);
   }
   leave_out_networks(run);
+  find_grid(run);
   leave_out_coarse_stamps(run);
   find_directions(run);
   mend_steps(run, options.response_us);

@@ -240,9 +240,10 @@ std::string Scene::route(std::size_t i) const {
                            : seen.kind == Kind::kSerial ? "serial line"
                                                         : address_text(seen.frame.src);
   const std::vector<std::uint16_t> to = receivers(i);
-  std::string names;
-  for (const std::uint16_t node : to) names += (names.empty() ? "" : ", ") + name(node);
-  if (to.size() > 2) names = "all";
+  std::string names = to.size() > 2 ? "all" : "";
+  for (const std::uint16_t node : to) {
+    if (to.size() <= 2) names += (names.empty() ? "" : ", ") + name(node);
+  }
   if (to.empty()) {
     names = seen.kind == Kind::kSerial ? "serial line" : address_text(seen.frame.dest);
   }

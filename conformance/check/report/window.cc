@@ -116,7 +116,7 @@ std::vector<FrameRange> Windows::around(const check::Finding& finding) {
   const std::size_t all = run_.seen.size();
   const std::size_t at = finding.place.frame == 0 ? all : index_of(run_, finding.place);
   if (at == all || run_.past.until_us >= 0) return {};
-  const auto affordable = [&] { return judged_ + 2 * all < kBudget; };
+  const auto affordable = [&] { return judged_ + 2 * all < budget(); };
   // Extends the part after the finding first, then before it, each time as little as needed.
   std::size_t end = all;
   for (std::size_t more = 3; at + more < all && affordable(); more *= 2) {

@@ -1,6 +1,7 @@
 // Parts of a run, and the smallest part that still shows a finding.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -43,8 +44,11 @@ class Windows {
   std::vector<FrameRange> around(const check::Finding& finding);
 
  private:
-  /// Observations that all searches together may judge.
-  static constexpr std::uint64_t kBudget = 4'000'000;
+  /// Observations that all searches together may judge: some for each of the run, however many
+  /// findings there are, and enough for a short run.
+  std::uint64_t budget() const {
+    return std::min<std::uint64_t>(4'000'000, 100'000 + 200 * run_.seen.size());
+  }
 
   std::vector<FrameRange> ranges(std::size_t begin, std::size_t end) const;
   bool shows(std::size_t begin, std::size_t end, const check::Finding& finding);

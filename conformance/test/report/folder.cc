@@ -24,7 +24,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* kAccount = "report.files";
 constexpr const char* kTitle = "rubric.files/1";
-constexpr const char* kStartPage = "index.html";
 
 // FNV-1a with 64 bits: it detects that a file was changed and resists no attacker.
 std::string sum_of(std::string_view text) {
@@ -63,6 +62,16 @@ bool swap_files(const fs::path& one, const fs::path& other) {
 }
 
 }  // namespace
+
+bool ReportFolder::may_replace(const fs::path& folder, const fs::path& file) {
+  std::error_code none;
+  const fs::path real = fs::weakly_canonical(file, none);
+  for (const char* name : {kPage, kJson, kJunit, kTap, kAccount}) {
+    const fs::path to = folder / name;
+    if (fs::equivalent(to, file, none) || fs::weakly_canonical(to, none) == real) return true;
+  }
+  return real.parent_path().parent_path() == fs::weakly_canonical(folder / kCases, none);
+}
 
 ReportFolder::ReportFolder(fs::path folder) : folder_(std::move(folder)) {
   make_folder(folder_);
@@ -179,10 +188,10 @@ void ReportFolder::finish() {
   try {
     for (const auto& [path, sum] : written_) make_folder((folder_ / path).parent_path());
     for (const auto& [path, sum] : written_) {
-      if (path != kStartPage) place(path);
+      if (path != kPage) place(path);
     }
     place(kAccount);
-    if (written_.contains(kStartPage)) place(kStartPage);
+    if (written_.contains(kPage)) place(kPage);
   } catch (const std::system_error&) {
     undo();
     throw;

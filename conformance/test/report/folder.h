@@ -16,6 +16,15 @@ namespace rubric::suite {
 /// the list does not have, that somebody has changed since, or that a link leads to.
 class ReportFolder {
  public:
+  /// Files of reports, beside those of cases, which are in folders of kCases.
+  static constexpr const char* kPage = "index.html";
+  static constexpr const char* kJson = "report.json";
+  static constexpr const char* kJunit = "junit.xml";
+  static constexpr const char* kTap = "report.tap";
+  static constexpr const char* kCases = "cases";
+  /// Returns whether a report in `folder` may replace the file, by whatever name or link.
+  static bool may_replace(const std::filesystem::path& folder, const std::filesystem::path& file);
+
   /// Makes the folder. Throws std::system_error with the path, as write() and finish() do.
   explicit ReportFolder(std::filesystem::path folder);
   /// Removes what was written, unless finish() was called.

@@ -92,12 +92,13 @@ void write_html_report(const SuiteRun& run, const EarlierRun* earlier, ReportFol
   std::vector<std::vector<CaseLinks>> links;
   for (std::size_t i = 0; i < run.implementations.size(); ++i) {
     const std::string name = names.unique(implementation_name(run, i));
-    links.push_back(write_cases(run.implementations[i], folder, "cases/" + name + "/"));
+    links.push_back(write_cases(run.implementations[i], folder,
+                                fmt::format("{}/{}/", ReportFolder::kCases, name)));
   }
   const std::string nonce = random_nonce();
   const std::string data = html_data(run, earlier, links);
   const std::string style = fmt::format("{}\n{}", report::kSequenceStyle, kStyle);
-  folder.write("index.html", filled(kPage, {nonce, style, data, kScript}));
+  folder.write(ReportFolder::kPage, filled(kPage, {nonce, style, data, kScript}));
 }
 
 }  // namespace rubric::suite

@@ -228,6 +228,7 @@ class Files(Folder):
         for name, content, words in (
                 ("report.json", CAPTURE.read_bytes(), ("check",)),
                 ("report.tap", CASE.encode(), ("test", "--target", "machine")),
+                ("report.files", CAPTURE.read_bytes(), ("check",)),
                 ("cases/machine/j2.rtr", CASE.encode(), ("test", "--target", "machine"))):
             read = self.folder / name
             read.write_bytes(content)
