@@ -47,6 +47,7 @@ struct CaseRun {
   /// skipped. At a node's own line, which names what it cannot show, only where that line lost or
   /// doubled something, or its application answered `unsupported`.
   bool owed = false;
+  runner::Ticks channel_access = 0;  ///< It fails, and passes if its nodes state this much.
   bool whole = false;  ///< Its log has all that its nodes got and did, in virtual time.
   double wall_ms = 0;
   std::string stderr_text;  ///< Written while it broke.

@@ -13,9 +13,11 @@
 #include <thread>
 #include <utility>
 
+#include "conformance/test/runner/expectation.h"
 #include "conformance/test/suite/canary.h"
 #include "conformance/test/suite/causes.h"
 #include "conformance/trace/headers.h"
+#include "conformance/trace/protocol.h"
 
 namespace rubric::suite {
 namespace {
@@ -41,6 +43,20 @@ std::string missing_role(const CaseRun& one, const targets::Identity& identity) 
                        plays);
   }
   return {};
+}
+
+// Returns the channel access with which a node that fails and states none passes; 0 if there is no
+// such, or in real time, where finding out takes as long again.
+runner::Ticks passing_access(const trace::File& head, const trace::Case& one,
+                             targets::Attachment& attachment) {
+  const targets::Identity& who = attachment.identity();
+  constexpr trace::ParameterId kId = trace::ParameterId::kChannelAccess;
+  if (!trace::protocol().has_machine || who.real_time || find(who.stated, kId)) return 0;
+  if (!runner::uses(one, kId)) return 0;
+  const runner::Ticks access = runner::profile_of(trace::scope_of(head, one)).early_ticks;
+  const runner::CaseResult again = runner::run_case(
+      head, one, [&](const trace::NodeHeader&) { return attachment.target(); }, access);
+  return again.verdict == CaseVerdict::kPass ? access : 0;
 }
 
 // Runs the cases of a plan, each repeat by itself, on several attachments.
@@ -116,6 +132,7 @@ CaseRun run_one(const SuiteCase& one, targets::Attachment& attachment, const std
   trace::File head;  // One case as a file.
   head.head = one.file->file.head;
   trace::Case itself = *one.one;
+  std::string text;  // Its standard error.
   if (!profile.empty()) {
     trace::set_header(head, itself, trace::ProfileHeader{profile});
     out.profile = profile;
@@ -133,7 +150,15 @@ CaseRun run_one(const SuiteCase& one, targets::Attachment& attachment, const std
       out.result = runner::run_case(head, itself,
                                     [&](const trace::NodeHeader&) { return attachment.target(); });
       out.foreign = out.result.not_built;
-      if (out.result.verdict == CaseVerdict::kFail) compare_with_machine(head, itself, out);
+      if (out.result.verdict == CaseVerdict::kFail) {
+        compare_with_machine(head, itself, out);
+        text = attachment.take_stderr();
+        const auto& failures = out.result.failures;
+        if (std::ranges::none_of(failures, [](const auto& failure) { return failure.crash; })) {
+          out.channel_access = passing_access(head, itself, attachment);
+        }
+        attachment.take_stderr();
+      }
     } else {
       out.result.verdict = CaseVerdict::kSkip;
       out.result.reason = missing;
@@ -149,7 +174,7 @@ CaseRun run_one(const SuiteCase& one, targets::Attachment& attachment, const std
     out.result.verdict = CaseVerdict::kError;
     out.result.reason = error.what();
   }
-  std::string text = attachment.take_stderr();
+  text += attachment.take_stderr();
   const bool wrong =
       out.result.verdict == CaseVerdict::kFail || out.result.verdict == CaseVerdict::kError;
   if (wrong) out.stderr_text = std::move(text);

@@ -145,12 +145,12 @@ class Running(Folder):
 
     def test_times_that_channel_access_explains(self):
         """A verdict says so once, and names what to state; it stays what it is."""
-        few = ["--cases", "j8.fail", "--cases", "more_j.one_retry_a_period", "--quiet"]
-        for period, told in (("495", True), ("450", False), ("700", False)):
+        few = ["--cases", "j8.retry", "--cases", "j8.lost_reply", "--quiet"]
+        for period, told in (("495", True), ("450", False), ("1024", False)):
             mote = self.mote_with("JOIN_PERIOD = 500", "JOIN_PERIOD = " + period)
             code, out, _ = test("--target", mote, *few)
             self.assertEqual(code, 1)
-            self.assertEqual("2 cases fail only by times that a radio's wait" in
+            self.assertEqual("2 failed cases would pass with --state channel_access=30" in
                              " ".join(out.split()), told, out)
             self.assertEqual(test("--target", mote, "--state", "channel_access=30", *few)[0],
                              0 if told else 1)
