@@ -190,6 +190,26 @@ TEST(Report, ARunThatIsIncompleteAsAWholeIsNotASuccess) {
   EXPECT_EQ(junit_report(run).find("nothing was decided"), std::string::npos);
 }
 
+// What nobody saw is open, unless a case that names the rule decides it.
+TEST(Report, ARuleThatIsLeftOpenIsNotASuccess) {
+  SuiteRun run = every_kind();
+  run.stale.clear();
+  std::vector<CaseRun>& cases = run.implementations[0].cases;
+  cases = {one("a.pass", CaseVerdict::kPass)};
+  run.implementations[0].outside = {
+      {"from its first case to its last", "said nothing", false, "", "N9-SET"_rule}};
+  EXPECT_EQ(exit_code(run), 3);
+  EXPECT_EQ(
+      incomplete_as_a_whole(run, run.implementations[0]),
+      "N9-SET is not decided, for it said nothing, from its first case to its last; --app lets "
+      "cases decide it");
+  cases[0].requirements.emplace_back("N9-SET"_rule);
+  EXPECT_EQ(exit_code(run), 0);
+  cases[0].result.verdict = CaseVerdict::kInconclusive;
+  cases.push_back(one("a.other", CaseVerdict::kPass));
+  EXPECT_EQ(exit_code(run), 3);
+}
+
 TEST(Report, WhatAnInconclusiveCaseBreaksIsShown) {
   SuiteRun run = every_kind();
   run.stale.clear();

@@ -65,6 +65,7 @@ struct OutsideFault {
   std::string text;         ///< "was killed by signal 9 (Killed)".
   bool broke = false;       ///< It died or spoke there; else it only did not end as `bye` asks for.
   std::string stderr_text;  ///< Written then.
+  ReqId open = ReqId::kNone;  ///< The rule that it leaves open, unless cases decide that.
 };
 
 /// All cases on one implementation.
@@ -113,7 +114,7 @@ RuledOut ruled_out(const ImplementationRun& implementation,
 /// incomplete.
 int exit_code(const SuiteRun& run);
 /// Returns why an implementation's run is incomplete: cases that are owed, nothing that was
-/// decided, or fewer rules than required. Empty if it is complete.
+/// decided, a rule that was left open, or fewer rules than required. Empty if it is complete.
 std::string incomplete(const SuiteRun& run, const ImplementationRun& implementation);
 
 using VerdictCounts = std::map<runner::CaseVerdict, std::size_t>;

@@ -71,12 +71,15 @@ class PlanRun {
   /// Keeps faults that happened when nothing was asked, noticed when case `before` was to begin.
   void keep_mishaps(targets::Attachment& attachment, std::size_t before) {
     for (targets::Mishap& one : attachment.take_mishaps()) {
-      const char* const at_end = one.broke ? "after its last case" : "after `bye`";
-      mishaps_.push_back(
-          {before,
-           {before < run_.cases.size() ? "before " + plan_.cases[before / plan_.repeats].one->name
-                                       : at_end,
-            std::move(one.text), one.broke, std::move(one.stderr_text)}});
+      std::string when = one.broke ? "after its last case" : "after `bye`";
+      if (before < run_.cases.size()) {
+        when = "before " + plan_.cases[before / plan_.repeats].one->name;
+      } else if (one.open != ReqId::kNone) {
+        when = "from its first case to its last";
+      }
+      mishaps_.push_back({before,
+                          {std::move(when), std::move(one.text), one.broke,
+                           std::move(one.stderr_text), one.open}});
     }
   }
 
@@ -129,10 +132,10 @@ CaseRun run_one(const SuiteCase& one, targets::Attachment& attachment, const std
   CaseRun out = one.blank();
   const auto start = Clock::now();
   out.result.name = out.name;
+  std::string text;  // Its standard error.
   trace::File head;  // One case as a file.
   head.head = one.file->file.head;
   trace::Case itself = *one.one;
-  std::string text;  // Its standard error.
   if (!profile.empty()) {
     trace::set_header(head, itself, trace::ProfileHeader{profile});
     out.profile = profile;

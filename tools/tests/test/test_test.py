@@ -4,6 +4,7 @@
 Usage: test_test.py RUBRIC in the project's folder.
 """
 
+import contextlib
 import json
 import pathlib
 import re
@@ -11,6 +12,7 @@ import shlex
 import signal
 import socket
 import subprocess
+import threading
 import time
 import unittest
 
@@ -66,6 +68,35 @@ for line in sys.stdin:
     else: answer = next(answers)
     print(answer, end="", flush=True)
 """
+
+
+class Station(threading.Thread):
+    """Connects to a Serial Forwarder, sends a config message if there is one, and listens."""
+
+    def __init__(self, port, config):
+        super().__init__(daemon=True)
+        self.port, self.packet = port, bytes([0, 0, 1, 0, 0, len(config), 0, 37]) + config
+
+    def __enter__(self):
+        self.start()
+
+    def __exit__(self, *_):
+        self.join(10)
+
+    def run(self):
+        while True:
+            with contextlib.suppress(ConnectionRefusedError):
+                line = socket.create_connection(("127.0.0.1", self.port))
+                break
+            time.sleep(0.02)
+        with line:
+            line.sendall(b"U ")
+            line.recv(2)
+            time.sleep(0.3)
+            if len(self.packet) > 8:
+                line.sendall(bytes([len(self.packet)]) + self.packet)
+            while line.recv(4096):
+                pass
 
 
 class Running(Folder):
@@ -229,6 +260,20 @@ class Running(Folder):
         self.assertRegex(out, r"INCONCLUSIVE \d+ cases: the target does not show radio")
         self.refused(("test", "--target", HONEST, "--app", "true"),
                      "an app goes with sf-server, sf or serial")
+
+    def test_a_base_station_that_never_tells_its_island(self):
+        """What it does is judged, but the run is incomplete: it may have told its sink before."""
+        for tells, code in ((b"\x0a\x00\x0b", 0), (b"\x0a\x00\x0c", 3), (b"", 3)):
+            with socket.create_server(("127.0.0.1", 0)) as server:
+                port = server.getsockname()[1]
+            with Station(port, tells):
+                got, out, err = test("--target", f"sf-server:{port}", "--cases",
+                                     "t1.base_station_line")
+            self.assertEqual(got, code, out + err)
+            self.assertIn("base_station_at_forwarder: 1 pass.", out)
+            self.assertEqual("Incomplete: N9-SET is not decided, for it did not tell its sink the "
+                             "island, from its first case to its last" in " ".join(out.split()),
+                             code == 3)
 
     def test_nobody_at_the_port(self):
         """It is not waited for longer than --timeout says, whatever starts slowly elsewhere."""
