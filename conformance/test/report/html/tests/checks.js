@@ -39,8 +39,9 @@ async function filters(page, go) {
 // Each implementation's own, once for all its cases.
 async function advice(page, go) {
   await go('#/cases');
-  const told = (await texts(page, '.tiles li')).map((text) => text.match(/\d+ failed cases? would/g));
-  assert.deepStrictEqual(told, [null, null, ['6 failed cases would']]);
+  const tiles = await texts(page, '.tiles li');
+  assert.deepStrictEqual(tiles.map((text) => text.match(/\d+ failed cases? would/g)),
+    [null, null, ['6 failed cases would']]);
 }
 
 async function order(page, go) {
