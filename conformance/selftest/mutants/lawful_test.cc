@@ -70,45 +70,6 @@ TEST(Lawful, BackOffFailsNoTrace) {
   }
 }
 
-// The machine with parameters of its own, whatever its configuration says.
-class Stubborn : public runner::Machine {
- public:
-  explicit Stubborn(trace::Statement kept) : kept_(std::move(kept)) {}
-  void start(const machine::Config& config) override {
-    machine::Config own = config;
-    own.profile = machine::kPaper;
-    events::state(own.profile, kept_);
-    Machine::start(own);
-  }
-
- private:
-  trace::Statement kept_;
-};
-
-// A back-off that is not stated fails traces; each failure says what to state. A join period that
-// is 200 ticks longer is no matter of channel access.
-TEST(Lawful, BackOffThatIsNotStatedIsTold) {
-  const Golden golden("conformance/cases");
-  const trace::Statement late_joins = {{trace::ParameterId::kJoinPeriod, 700}};
-  std::size_t told = 0;
-  std::size_t late = 0;
-  for (const CaseRef& ref : golden.cases()) {
-    const auto backs_off = run(ref, wrapped(backing_off(1, 10)));
-    for (const runner::Failure& one : backs_off.failures) {
-      EXPECT_TRUE(one.channel_access == 30 || one.implied)
-          << runner::explain(backs_off, ref.file->file_name);
-      ++told;
-    }
-    const auto slow = [&] { return std::make_unique<Stubborn>(late_joins); };
-    for (const runner::Failure& one : run(ref, slow).failures) {
-      EXPECT_EQ(one.channel_access, 0U) << ref.one->name << ": " << one.text;
-      ++late;
-    }
-  }
-  EXPECT_GT(told, 5U);
-  EXPECT_GT(late, 5U);
-}
-
 // One to all parameters, anywhere in their ranges.
 trace::Statement random_statement(std::minstd_rand& random) {
   trace::Statement out;
@@ -140,6 +101,21 @@ TEST(Lawful, NothingThatIsStatedFailsATrace) {
   }
   EXPECT_GT(tried, all / 2);
 }
+
+// The machine with parameters of its own, whatever its configuration says.
+class Stubborn : public runner::Machine {
+ public:
+  explicit Stubborn(trace::Statement kept) : kept_(std::move(kept)) {}
+  void start(const machine::Config& config) override {
+    machine::Config own = config;
+    own.profile = machine::kPaper;
+    events::state(own.profile, kept_);
+    Machine::start(own);
+  }
+
+ private:
+  trace::Statement kept_;
+};
 
 std::size_t failures(const Golden& golden, const runner::SubjectFactory& make,
                      const trace::Statement& stated) {

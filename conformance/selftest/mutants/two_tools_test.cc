@@ -337,6 +337,19 @@ TEST(TwoTools, NoRunWithBackOffIsBlamed) {
   }
 }
 
+// Where it is not stated the suite says what to state.
+TEST(TwoTools, BackOffThatIsNotStatedIsTold) {
+  suite::testing::FakeAttachment attachment = attached(backing_off(1, 10), {});
+  std::size_t told = 0;
+  for (const suite::SuiteCase& one : cases().all()) {
+    const suite::CaseRun run = run_one(one, attachment);
+    const bool fails = run.result.verdict == CaseVerdict::kFail;
+    EXPECT_EQ(run.channel_access, fails ? 30U : 0U) << run.name;
+    told += fails ? 1 : 0;
+  }
+  EXPECT_GT(told, 5U);
+}
+
 TEST(TwoTools, NoRunOfAShippedImplementationIsBlamed) {
   for (const char* const target : {RUBRIC_SHIPPED}) {
     const auto attachment = targets::attach(target, {});

@@ -56,25 +56,21 @@ std::string reach_text(const ImplementationRun& implementation) {
       played - beyond, text::counted(played, "case"), fmt::join(unseen, ", "));
 }
 
-// Says how many cases fail by no more than what a radio's wait for its channel explains.
+// Says how many cases would pass if a radio's wait for its channel were stated.
 std::string access_text(const ImplementationRun& implementation) {
   std::size_t cases = 0;
   runner::Ticks access = 0;
   for (const CaseRun& one : implementation.cases) {
-    const std::vector<runner::Failure>& all = one.result.failures;
-    const auto explained = [](const runner::Failure& failure) {
-      return failure.channel_access > 0 || failure.implied;
-    };
-    const bool first = !all.empty() && all.front().channel_access > 0;
-    if (!first || !std::ranges::all_of(all, explained)) continue;
+    if (one.channel_access == 0) continue;
     ++cases;
-    access = all.front().channel_access;
+    access = one.channel_access;
   }
   if (cases == 0) return {};
   return fmt::format(
-      "{} only by times that a radio's wait for a free channel explains: if yours waits, state it, "
-      "with --state channel_access={} (decision 128).",
-      text::counted(cases, "case fails", "cases fail"), access);
+      "{} would pass with --state channel_access={}: state it if the radio waits for a free "
+      "channel "
+      "before it sends (decision 128).",
+      text::counted(cases, "failed case"), access);
 }
 
 }  // namespace

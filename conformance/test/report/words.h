@@ -32,8 +32,8 @@ std::string headline(const CaseRun& one);
 /// Returns rules with their sentences, the lines that were not kept, what happened instead, and the
 /// standard error of a broken target.
 std::string in_full(const CaseRun& one);
-/// Returns why a run is incomplete although none of its cases says so: nothing was decided, or too
-/// few rules. Mostly empty.
+/// Returns why a run is incomplete although none of its cases says so: nothing was decided, a rule
+/// was left open, or too few were decided. Mostly empty.
 std::string incomplete_as_a_whole(const SuiteRun& run, const ImplementationRun& implementation);
 /// Returns whether it died or wrote something outside of the cases.
 bool broke_outside(const ImplementationRun& implementation);

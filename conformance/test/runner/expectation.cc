@@ -44,17 +44,6 @@ std::set<std::string> variables_of(const Line& line) {
   return out;
 }
 
-Window with_channel_access(const Line& line, const Window& window, Ticks access) {
-  const auto moved = [&](Ticks end, const std::vector<trace::Term>& terms) {
-    std::int64_t out = end;
-    for (const trace::Term& term : terms) {
-      if (term.parameter == trace::ParameterId::kChannelAccess) out += term.factor * access;
-    }
-    return static_cast<Ticks>(std::max<std::int64_t>(out, 0));
-  };
-  return {moved(window.from, line.time.from_terms), moved(window.to, line.time.to_terms)};
-}
-
 std::vector<std::string> rules_of_stimulus(const trace::Case& one, const Line* stimulus,
                                            std::string_view node) {
   std::vector<std::string> before;
@@ -66,6 +55,14 @@ std::vector<std::string> rules_of_stimulus(const trace::Case& one, const Line* s
     before = line->requirements;
   }
   return before;
+}
+
+bool uses(const trace::Case& one, trace::ParameterId parameter) {
+  const auto is_of_it = [&](const trace::Term& term) { return term.parameter == parameter; };
+  return std::ranges::any_of(one.lines(), [&](const Line* line) {
+    return std::ranges::any_of(line->time.from_terms, is_of_it) ||
+           std::ranges::any_of(line->time.to_terms, is_of_it);
+  });
 }
 
 bool is_needed_later(const trace::Case& one, const Line& line) {

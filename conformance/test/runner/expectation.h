@@ -18,12 +18,12 @@ bool is_weak(const trace::Line& line);
 /// names. Without such a line the case can go on where the output that `line` asks for cannot be
 /// seen.
 bool is_needed_later(const trace::Case& one, const trace::Line& line);
-/// Returns a window of the line as it is when the node states that much channel access.
-Window with_channel_access(const trace::Line& line, const Window& window, Ticks access);
 /// Returns the rules of `stimulus`, or of the start if it is null: those of the first line after it
 /// that judges the node, else of the last one before it.
 std::vector<std::string> rules_of_stimulus(const trace::Case& one, const trace::Line* stimulus,
                                            std::string_view node);
+/// Returns whether a time of the case has this parameter.
+bool uses(const trace::Case& one, trace::ParameterId parameter);
 /// Returns the variables that a line names.
 std::set<std::string> variables_of(const trace::Line& line);
 

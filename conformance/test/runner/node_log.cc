@@ -318,7 +318,6 @@ NearestMiss NodeLog::nearest_miss(const trace::Line& line, const Window& window,
   } else if (const Output* output = forbidden(line, {0, latest}, bindings)) {
     miss.text =
         fmt::format("it came at {}, not from {} to {}", output->time, window.from, window.to);
-    miss.outside = output->time;
   } else {
     const Span span = in_window(window);
     std::size_t best = std::numeric_limits<std::size_t>::max();

@@ -29,8 +29,7 @@ struct LoggedLine {
 struct NearestMiss {
   std::string text;
   Evidence evidence;
-  std::optional<Ticks> time = {};     // When it came, if it came in the window and differs.
-  std::optional<Ticks> outside = {};  // When it came, if that was before or after the window.
+  std::optional<Ticks> time = {};  // When it came, if it came in the window and differs.
 };
 
 /// An output with bytes after the content of a message that has one size only.

@@ -42,8 +42,12 @@ std::int64_t seeded_number(std::uint64_t seed) {
 // One case while it runs.
 class Run {
  public:
-  Run(const trace::File& file, const trace::Case& one, const TargetFactory& make)
-      : case_(one), scope_(trace::scope_of(file, one)), make_(make), place_(one.place) {
+  Run(const trace::File& file, const trace::Case& one, const TargetFactory& make, Ticks access)
+      : case_(one),
+        scope_(trace::scope_of(file, one)),
+        make_(make),
+        channel_access_(access),
+        place_(one.place) {
     bindings_.set(trace::kSeeded, trace::Value::of(seeded_number(scope_.seed)));
   }
 
@@ -190,9 +194,10 @@ class Run {
   // A line forbids nothing where what is stated leaves no time between two frames.
   static bool is_empty(const Window& window) { return window.to < window.from; }
   bool states_anything() const {
-    return std::any_of(scope_.nodes.begin(), scope_.nodes.end(), [](const trace::NodeHeader& node) {
-      return node.iut && !node.stated.empty();
-    });
+    return channel_access_ > 0 ||
+           std::any_of(scope_.nodes.begin(), scope_.nodes.end(), [](const trace::NodeHeader& node) {
+             return node.iut && !node.stated.empty();
+           });
   }
 
   // Returns the ticks of a time, its parameters included, with the values of the line's node.
@@ -214,6 +219,7 @@ class Run {
       const std::int64_t* const stated = node.iut ? find(node.stated, id) : nullptr;
       if (stated) return *stated;
     }
+    if (id == trace::ParameterId::kChannelAccess && channel_access_ > 0) return channel_access_;
     return trace::protocol().has_machine ? events::assumed(profile_of(scope_), id)
                                          : trace::parameter(id).unstated;
   }
@@ -447,9 +453,6 @@ class Run {
       // An output that differs broke the line when it came: what another line says of the same
       // output must not come first and take the blame.
       if (miss.time) result.failures.back().broken_at = *miss.time;
-      if (miss.outside) {
-        result.failures.back().channel_access = allowing_access(line, one.wide, *miss.outside);
-      }
       refusals_.blame(line, result.failures.back());
     }
     for (const Line* l : skipped_) allowed_.push_back({l, {names_lost(*l) ? 0 : since, now_}, 0});
@@ -466,7 +469,6 @@ class Run {
       fail(result, *one.line, one.window, output->time,
            fmt::format("at {} it emitted {}", output->time, node.text_of(*output)),
            node.evidence_of(*output));
-      result.failures.back().channel_access = allowing_access(*one.line, one.window, output->time);
     }
     std::stable_sort(
         result.failures.begin(), result.failures.end(), [](const Failure& a, const Failure& b) {
@@ -511,17 +513,6 @@ class Run {
     failure.requirements.resize(1);
   }
 
-  // Returns the channel access that allows what came then although the line, within `window`, does
-  // not; 0 if none does, or if the node states its own.
-  Ticks allowing_access(const Line& line, const Window& window, Ticks came) const {
-    const trace::NodeHeader* const node = scope_.node(line.node);
-    const bool stated = node && find(node->stated, trace::ParameterId::kChannelAccess);
-    if (stated || !trace::protocol().has_machine) return 0;
-    const Ticks access = profile_of(scope_).early_ticks;
-    const bool held = with_channel_access(line, window, access).holds(came);
-    return held == (line.op != Op::kMustNot) ? access : 0;
-  }
-
   void fail(CaseResult& result, const Line& line, const Window& window, Ticks time,
             std::string text, const Evidence& evidence) {
     Failure failure{.place = line.place,
@@ -558,6 +549,7 @@ class Run {
   const trace::Case& case_;
   const trace::Scope scope_;
   const TargetFactory& make_;
+  const Ticks channel_access_;
   trace::Place place_;              // Place of the current line.
   const Line* stimulus_ = nullptr;  // Given last.
   bool begun_ = false;
@@ -591,8 +583,9 @@ std::string_view verdict_text(CaseVerdict verdict) {
   return "";
 }
 
-CaseResult run_case(const trace::File& file, const trace::Case& one, const TargetFactory& make) {
-  return Run(file, one, make).finish();
+CaseResult run_case(const trace::File& file, const trace::Case& one, const TargetFactory& make,
+                    Ticks channel_access) {
+  return Run(file, one, make, channel_access).finish();
 }
 
 }  // namespace rubric::runner

@@ -54,8 +54,6 @@ struct Failure {
   std::string message = {};  ///< That of the line.
   /// What is wrong with one that came: the words of runner::Evidence. Empty if none came.
   std::set<std::string, std::less<>> symptom = {};
-  /// The channel access that allows what came, where the node states none; 0: none would.
-  Ticks channel_access = 0;
   /// Rules by which the reference machine did what the node did not, there or before.
   std::set<std::string> left_undone = {};
 
@@ -80,8 +78,9 @@ struct CaseResult {
 using TargetFactory = std::function<std::unique_ptr<Target>(const trace::NodeHeader& node)>;
 
 /// Runs a case; every node under test gets a target. Does not throw: a case that cannot be run is
-/// kError.
-CaseResult run_case(const trace::File& file, const trace::Case& one, const TargetFactory& make);
+/// kError. Nodes that state no `channel_access` are judged as if they had stated this one.
+CaseResult run_case(const trace::File& file, const trace::Case& one, const TargetFactory& make,
+                    Ticks channel_access = 0);
 
 /// Returns the profile that a trace is for.
 machine::Profile profile_of(const trace::Scope& scope);

@@ -30,6 +30,14 @@ Rules rules_of(const CaseRun& one, bool blamed) {
   return out;
 }
 
+// Returns whether a case that names the rule passed, or one broke it.
+bool is_decided(const ImplementationRun& implementation, ReqId rule) {
+  return std::ranges::any_of(by_requirement(implementation), [&](const RequirementSummary& one) {
+    return one.requirement == rule &&
+           (one.broken > 0 || one.cases.contains(runner::CaseVerdict::kPass));
+  });
+}
+
 // Says of a role how little is left of its cases where what is stated rules most of them out.
 std::string ruled_out_most(const ImplementationRun& implementation) {
   for (const machine::Role role : implementation.identity.roles) {
@@ -100,6 +108,11 @@ std::string incomplete(const SuiteRun& run, const ImplementationRun& implementat
   if (owed > 0) {
     return fmt::format("{} {} neither decided nor listed with a reason",
                        text::counted(owed, "case"), owed == 1 ? "is" : "are");
+  }
+  for (const OutsideFault& one : implementation.outside) {
+    if (one.open == ReqId::kNone || is_decided(implementation, one.open)) continue;
+    return fmt::format("{} is not decided, for it {}, {}; --app lets cases decide it",
+                       trace::requirement_text(one.open), one.text, one.when);
   }
   if (rules_decided < run.rules_required) {
     return fmt::format("{} decided, of {} required", text::counted(rules_decided, "rule"),

@@ -47,6 +47,7 @@ struct CaseRun {
   /// skipped. At a node's own line, which names what it cannot show, only where that line lost or
   /// doubled something, or its application answered `unsupported`.
   bool owed = false;
+  runner::Ticks channel_access = 0;  ///< It fails, and passes if its nodes state this much.
   bool whole = false;  ///< Its log has all that its nodes got and did, in virtual time.
   double wall_ms = 0;
   std::string stderr_text;  ///< Written while it broke.
@@ -64,6 +65,7 @@ struct OutsideFault {
   std::string text;         ///< "was killed by signal 9 (Killed)".
   bool broke = false;       ///< It died or spoke there; else it only did not end as `bye` asks for.
   std::string stderr_text;  ///< Written then.
+  ReqId open = ReqId::kNone;  ///< The rule that it leaves open, unless cases decide that.
 };
 
 /// All cases on one implementation.
@@ -112,7 +114,7 @@ RuledOut ruled_out(const ImplementationRun& implementation,
 /// incomplete.
 int exit_code(const SuiteRun& run);
 /// Returns why an implementation's run is incomplete: cases that are owed, nothing that was
-/// decided, or fewer rules than required. Empty if it is complete.
+/// decided, a rule that was left open, or fewer rules than required. Empty if it is complete.
 std::string incomplete(const SuiteRun& run, const ImplementationRun& implementation);
 
 using VerdictCounts = std::map<runner::CaseVerdict, std::size_t>;

@@ -13,9 +13,11 @@
 #include <thread>
 #include <utility>
 
+#include "conformance/test/runner/expectation.h"
 #include "conformance/test/suite/canary.h"
 #include "conformance/test/suite/causes.h"
 #include "conformance/trace/headers.h"
+#include "conformance/trace/protocol.h"
 
 namespace rubric::suite {
 namespace {
@@ -43,6 +45,20 @@ std::string missing_role(const CaseRun& one, const targets::Identity& identity) 
   return {};
 }
 
+// Returns the channel access with which a node that fails and states none passes; 0 if there is no
+// such, or in real time, where finding out takes as long again.
+runner::Ticks passing_access(const trace::File& head, const trace::Case& one,
+                             targets::Attachment& attachment) {
+  const targets::Identity& who = attachment.identity();
+  constexpr trace::ParameterId kId = trace::ParameterId::kChannelAccess;
+  if (!trace::protocol().has_machine || who.real_time || find(who.stated, kId)) return 0;
+  if (!runner::uses(one, kId)) return 0;
+  const runner::Ticks access = runner::profile_of(trace::scope_of(head, one)).early_ticks;
+  const runner::CaseResult again = runner::run_case(
+      head, one, [&](const trace::NodeHeader&) { return attachment.target(); }, access);
+  return again.verdict == CaseVerdict::kPass ? access : 0;
+}
+
 // Runs the cases of a plan, each repeat by itself, on several attachments.
 class PlanRun {
  public:
@@ -55,12 +71,15 @@ class PlanRun {
   /// Keeps faults that happened when nothing was asked, noticed when case `before` was to begin.
   void keep_mishaps(targets::Attachment& attachment, std::size_t before) {
     for (targets::Mishap& one : attachment.take_mishaps()) {
-      const char* const at_end = one.broke ? "after its last case" : "after `bye`";
-      mishaps_.push_back(
-          {before,
-           {before < run_.cases.size() ? "before " + plan_.cases[before / plan_.repeats].one->name
-                                       : at_end,
-            std::move(one.text), one.broke, std::move(one.stderr_text)}});
+      std::string when = one.broke ? "after its last case" : "after `bye`";
+      if (before < run_.cases.size()) {
+        when = "before " + plan_.cases[before / plan_.repeats].one->name;
+      } else if (one.open != ReqId::kNone) {
+        when = "from its first case to its last";
+      }
+      mishaps_.push_back({before,
+                          {std::move(when), std::move(one.text), one.broke,
+                           std::move(one.stderr_text), one.open}});
     }
   }
 
@@ -113,6 +132,7 @@ CaseRun run_one(const SuiteCase& one, targets::Attachment& attachment, const std
   CaseRun out = one.blank();
   const auto start = Clock::now();
   out.result.name = out.name;
+  std::string text;  // Its standard error.
   trace::File head;  // One case as a file.
   head.head = one.file->file.head;
   trace::Case itself = one.whole();
@@ -133,7 +153,15 @@ CaseRun run_one(const SuiteCase& one, targets::Attachment& attachment, const std
       out.result = runner::run_case(head, itself,
                                     [&](const trace::NodeHeader&) { return attachment.target(); });
       out.foreign = out.result.not_built;
-      if (out.result.verdict == CaseVerdict::kFail) compare_with_machine(head, itself, out);
+      if (out.result.verdict == CaseVerdict::kFail) {
+        compare_with_machine(head, itself, out);
+        text = attachment.take_stderr();
+        const auto& failures = out.result.failures;
+        if (std::ranges::none_of(failures, [](const auto& failure) { return failure.crash; })) {
+          out.channel_access = passing_access(head, itself, attachment);
+        }
+        attachment.take_stderr();
+      }
     } else {
       out.result.verdict = CaseVerdict::kSkip;
       out.result.reason = missing;
@@ -149,7 +177,7 @@ CaseRun run_one(const SuiteCase& one, targets::Attachment& attachment, const std
     out.result.verdict = CaseVerdict::kError;
     out.result.reason = error.what();
   }
-  std::string text = attachment.take_stderr();
+  text += attachment.take_stderr();
   const bool wrong =
       out.result.verdict == CaseVerdict::kFail || out.result.verdict == CaseVerdict::kError;
   if (wrong) out.stderr_text = std::move(text);

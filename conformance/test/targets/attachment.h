@@ -32,6 +32,8 @@ struct Mishap {
   /// only its end did not follow `bye` as it should.
   bool broke = false;
   std::string stderr_text;  ///< Its last words.
+  /// The rule that this may break: it was not seen whether it does. Of the whole run, at its end.
+  ReqId open = ReqId::kNone;
 };
 
 /// For one thread. Destroy its targets before it.

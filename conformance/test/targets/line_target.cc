@@ -58,14 +58,18 @@ machine::Frame to_sink(std::uint8_t type, Bytes payload) {
   return {machine::Link::kSerial, 1, 0, type, payload};
 }
 
+// Returns the island that a base station tells its sink by this, or nothing.
+std::optional<std::uint16_t> told_island(const trace::AmFrame& frame) {
+  const auto told = rubicon::ConfigView::parse(Bytes(frame.payload.data(), frame.payload.size()));
+  const bool tells = frame.type == machine::am::kConfig && told &&
+                     told->type() == rubicon::CommandCode::kSetIslandId;
+  return tells ? std::optional(told->value()) : std::nullopt;
+}
+
 // Returns whether a node that starts with `config` has sent this, and is there.
 bool shows_node(const trace::AmFrame& frame, const machine::Config& config) {
+  if (config.role == machine::Role::kBaseStation) return told_island(frame).has_value();
   const Bytes payload(frame.payload.data(), frame.payload.size());
-  if (config.role == machine::Role::kBaseStation) {
-    const auto told = rubicon::ConfigView::parse(payload);
-    return frame.type == machine::am::kConfig && told &&
-           told->type() == rubicon::CommandCode::kSetIslandId;
-  }
   const auto message = rubicon::NetMsgView::parse(payload);
   return frame.type == machine::am::kNet && message &&
          machine::address_of(message->src()) == machine::Address{config.island, config.id};
@@ -88,6 +92,8 @@ void LineTarget::reset(const machine::Config& config) {
         std::async(std::launch::async, [&] { app_->reset(config, line_.node.identity.stated); });
   }
   line_.open();
+  line_.asked = true;
+  island_ = config.island;
   if (app_) started.get();
   if (!is_mote()) {  // A mote's line shows nothing.
     if (!line_.is_new) wait_until_quiet();
@@ -125,7 +131,9 @@ void LineTarget::await_node(const machine::Config& config) {
     const lines::SteadyTime pause = is_sink ? steady_clock::now() + kAskAgain : end;
     while (const auto packet = line_.line->receive(pause)) {
       trace::AmFrame frame;
-      if (read_packet(*packet, frame) && shows_node(frame, config)) return;
+      if (!read_packet(*packet, frame)) continue;
+      note_island(frame);
+      if (shows_node(frame, config)) return;
     }
   }
   line_.mishaps.push_back(
@@ -136,11 +144,18 @@ void LineTarget::await_node(const machine::Config& config) {
        {}});
 }
 
+void LineTarget::note_island(const trace::AmFrame& frame) {
+  line_.told = line_.told || told_island(frame) == island_;
+}
+
 void LineTarget::wait_until_quiet() {
   const lines::SteadyTime end = steady_clock::now() + kQuietMax;
   const lines::SteadyTime answered = std::min(end, line_.last_given + kAnswerMax);
-  while (steady_clock::now() < end &&
-         line_.line->receive(std::max(answered, steady_clock::now() + kQuiet))) {
+  while (steady_clock::now() < end) {
+    const auto packet = line_.line->receive(std::max(answered, steady_clock::now() + kQuiet));
+    if (!packet) return;
+    trace::AmFrame frame;
+    if (read_packet(*packet, frame)) note_island(frame);
   }
 }
 
@@ -244,6 +259,7 @@ bool LineTarget::take(const lines::TimedPacket& packet) {
     line_.line->close();
     throw TargetBroken(fmt::format("more than {} packets on the serial line", kOutputsMax));
   }
+  note_island(frame);
   now_ = std::max(now_, clock_.tick_of(packet.time));
   runner::Output& output = outputs_.emplace_back();
   output.time = now_;
@@ -329,7 +345,13 @@ void NodeLine::open() {
   absent = false;
 }
 
+// Whether a base station that connects has just started nobody can see; but the first thing that
+// its sink needs is the island.
 void LineAttachment::finish() {
+  const bool is_base = line_.node.identity.roles.front() == machine::Role::kBaseStation;
+  if (is_base && line_.asked && !line_.told) {
+    line_.mishaps.push_back({"did not tell its sink the island", false, {}, "N9-SET"_rule});
+  }
   if (app_) app_->finish();
 }
 

@@ -79,6 +79,8 @@ struct NodeLine {
   bool opened = false;           ///< Once, at least.
   bool absent = false;           ///< The node did not come when it was last awaited.
   bool is_new = false;           ///< It was opened, and the node has not been awaited since.
+  bool asked = false;            ///< A case began.
+  bool told = false;             ///< A base station told its sink the island of a case.
   lines::SteadyTime last_given;  ///< In any case.
   std::string notes;
   std::vector<Mishap> mishaps;
@@ -114,6 +116,7 @@ class LineTarget : public runner::Target {
   void set_island(const machine::Config& config);
   void ask_for_ack(const machine::Config& config);
   void await_node(const machine::Config& config);
+  void note_island(const trace::AmFrame& frame);
   void wait_until_quiet();
   bool take(const lines::TimedPacket& packet);
   bool take(std::vector<Output> outputs);
@@ -123,6 +126,7 @@ class LineTarget : public runner::Target {
   std::unique_ptr<AppChannel> app_;
   RealClock clock_;
   std::vector<runner::Output> outputs_;
+  std::uint16_t island_ = 0;  // Of the case.
   runner::Ticks now_ = 0;
   std::optional<runner::Window> given_;
   const DelayWatch delays_;

@@ -36,6 +36,14 @@ async function filters(page, go) {
   assert.ok(both.every((name) => /base_station|n11/.test(name)), both.join(' '));
 }
 
+// Each implementation's own, once for all its cases.
+async function advice(page, go) {
+  await go('#/cases');
+  const tiles = await texts(page, '.tiles li');
+  assert.deepStrictEqual(tiles.map((text) => text.match(/\d+ failed cases? would/g)),
+    [null, null, ['6 failed cases would']]);
+}
+
 async function order(page, go) {
   await go('#/cases');
   const verdicts = await page.locator('#matrix tbody tr').evaluateAll((all) => all.map((row) => {
@@ -294,7 +302,8 @@ async function narrow(page, go) {
 }
 
 const kTelephone = { shape: { width: 390, height: 800 } };
-const checks = [['filters', filters], ['failures first', order], ['search', search],
+const checks = [['filters', filters], ['advice', advice], ['failures first', order],
+  ['search', search],
   ['an earlier run', compared],
   ['a failing case and its chart', failing], ['bytes by field', bytes], ['files', files],
   ['rules', rules], ['the figures of the paper', figures], ['keyboard', keyboard],

@@ -68,6 +68,7 @@ ImplementationRun hostile(const ImplementationRun& good) {
       one.result.failures.push_back(
           {{12, 1}, {"J4-SEQ", "__proto__", kMarkup}, false, 3, kMarkup, kMarkup, 1, 3, true});
     }
+    one.channel_access = 30;
     trace::Line line = trace::Line();
     line.time = trace::Time::at(1);
     line.node = "m5";
