@@ -463,6 +463,9 @@ class Run {
       fail(result, *one.line, one.window, output->time,
            fmt::format("at {} it emitted {}", output->time, node.text_of(*output)),
            node.evidence_of(*output));
+      const trace::Parameter* const stated = trace::find_parameter("response");
+      const std::int64_t response = stated ? value(node.name(), stated->id) : kLastTick;
+      result.failures.back().prompt = node.prompt_of(*output, response);
     }
     std::stable_sort(
         result.failures.begin(), result.failures.end(), [](const Failure& a, const Failure& b) {

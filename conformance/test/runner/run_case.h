@@ -54,6 +54,7 @@ struct Failure {
   std::string message = {};  ///< That of the line.
   /// What is wrong with one that came: the words of runner::Evidence. Empty if none came.
   std::set<std::string, std::less<>> symptom = {};
+  std::string prompt = {};  ///< The kind of message that it answered: NodeLog::prompt_of().
   /// Rules by which the reference machine did what the node did not, there or before.
   std::set<std::string> left_undone = {};
 
