@@ -308,7 +308,29 @@ const Output* NodeLog::forbidden(const trace::Line& line, const Window& window,
   return matching(line, window, bindings, false);
 }
 
-NearestMiss NodeLog::nearest_miss(const trace::Line& line, const Window& window, Ticks latest,
+// What came before the last message was no answer to it, and what comes at the very tick of a later
+// one is the answer to that.
+const Output* NodeLog::too_early_or_late(const trace::Line& line, const Window& window,
+                                         const trace::Bindings& bindings) {
+  Ticks since = 0;
+  for (const Prompt& prompt : prompts_) {
+    if (prompt.time <= window.from) since = prompt.time;
+  }
+  const Output* const early =
+      since < window.from ? forbidden(line, {since, window.from - 1}, bindings) : nullptr;
+  if (early != nullptr) return early;
+  const Ticks latest = window.to + kLateTicks;
+  const Output* late = forbidden(line, {window.to + 1, latest}, bindings);
+  const auto is_prompted = [&] {
+    return std::ranges::any_of(prompts_,
+                               [&](const Prompt& prompt) { return prompt.time == late->time; });
+  };
+  while (late != nullptr && is_prompted())
+    late = forbidden(line, {late->time + 1, latest}, bindings);
+  return late;
+}
+
+NearestMiss NodeLog::nearest_miss(const trace::Line& line, const Window& window,
                                   const trace::Bindings& bindings) {
   constexpr std::size_t kLooksMost = 100;
   NearestMiss miss{"it emitted nothing there", {"missing"}};
@@ -318,7 +340,8 @@ NearestMiss NodeLog::nearest_miss(const trace::Line& line, const Window& window,
     miss = {fmt::format("at {} it came before one that was to come first", late->time),
             {"differs", "order"},
             late->time};
-  } else if (const Output* output = forbidden(line, {0, latest}, bindings)) {
+  } else if (const Output* output = too_early_or_late(line, window, bindings)) {
+    miss.elsewhere = output->time;
     miss.text =
         fmt::format("it came at {}, not from {} to {}", output->time, window.from, window.to);
   } else {

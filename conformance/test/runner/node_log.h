@@ -24,12 +24,16 @@ struct LoggedLine {
   std::string text;
 };
 
+/// How long a missing output is awaited beyond its time.
+constexpr Ticks kLateTicks = 1500;
+
 /// How the closest output missed a line: one of the same message in its window, or the very output
-/// at another time.
+/// too early or too late.
 struct NearestMiss {
   std::string text;
   Evidence evidence;
-  std::optional<Ticks> time = {};  // When it came, if it came in the window and differs.
+  std::optional<Ticks> time = {};       ///< When it came, if it came in the window and differs.
+  std::optional<Ticks> elsewhere = {};  ///< When it came, if that was not in the window.
 };
 
 /// An output with bytes after the content of a message that has one size only.
@@ -63,9 +67,10 @@ class NodeLog {
   /// Returns the first output that breaks a `!>` line, or null.
   const Output* forbidden(const trace::Line& line, const Window& window,
                           const trace::Bindings& bindings);
-  /// Explains why no output was taken, by those until `latest`. Where many come in the window that
-  /// have the name of its message, the first ones tell how they differ.
-  NearestMiss nearest_miss(const trace::Line& line, const Window& window, Ticks latest,
+  /// Explains why no output was taken. Where many come in the window that have the name of its
+  /// message, the first ones tell how they differ. The very output counts outside of the window
+  /// from the message on that the node was given last before it, and for kLateTicks after it.
+  NearestMiss nearest_miss(const trace::Line& line, const Window& window,
                            const trace::Bindings& bindings);
   /// Returns the outputs that are longer than their message, the first of each rule that gives
   /// its size.
@@ -127,6 +132,9 @@ class NodeLog {
   /// null; `in_turn`: of those whose turn it is.
   const Output* matching(const trace::Line& line, const Window& window,
                          const trace::Bindings& bindings, bool in_turn);
+  /// Returns the very output that the line asks for, too early or too late, or null.
+  const Output* too_early_or_late(const trace::Line& line, const Window& window,
+                                  const trace::Bindings& bindings);
   void take(const Output& output, const trace::Line& line);
   std::size_t place_of(const Output& output) const {
     return static_cast<std::size_t>(&output - target_->outputs().data());
