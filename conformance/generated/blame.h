@@ -12,6 +12,7 @@ struct Sign {
 /// What a break shows.
 constexpr Sign kShows[] = {
     {"N2-ONCE", "net_msg again"},
+    {"N2-IN-ORDER", "received again"},
     {"N5-FOREIGN", "received"},
     {"N5-FOREIGN", "ack"},
     {"N5-FOREIGN", "ack_received"},

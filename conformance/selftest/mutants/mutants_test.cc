@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <map>
 #include <regex>
 #include <set>
 #include <thread>
@@ -229,6 +230,19 @@ TEST(Mutants, IndependentFaultsAreAllBroken) {
     EXPECT_EQ(broken, row.broken);
     EXPECT_GT(suspected, 3U) << "or nothing of others fails";
   }
+}
+
+TEST(Mutants, WhatIsDeliveredTwiceWasNotLostFromAFullBuffer) {
+  const auto twice = std::ranges::find(named().mutants, "delivered_twice", &Mutant::name);
+  ASSERT_NE(twice, named().mutants.end());
+  suite::ImplementationRun run = whole_suite(twice->factory());
+  suite::find_causes(run);
+  std::map<std::string, std::size_t> broken;
+  for (const suite::RequirementSummary& rule : suite::by_requirement(run)) {
+    broken.emplace(trace::requirement_text(rule.requirement), rule.broken);
+  }
+  EXPECT_GT(broken["N2-IN-ORDER"], 0U);
+  EXPECT_EQ(broken["N2-IN-FULL"], 0U);
 }
 
 // Makes a wrapper that acks what must not be acked, 800 ticks after it came by its line.
