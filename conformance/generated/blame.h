@@ -13,6 +13,7 @@ struct Sign {
 constexpr Sign kShows[] = {
     {"N2-ONCE", "net_msg again"},
     {"N2-IN-ORDER", "received again"},
+    {"N2-IN-FULL", "received new"},
     {"N5-FOREIGN", "received"},
     {"N5-FOREIGN", "ack"},
     {"N5-FOREIGN", "ack_received"},
