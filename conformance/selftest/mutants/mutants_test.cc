@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <map>
 #include <regex>
 #include <set>
 #include <thread>
@@ -106,11 +107,23 @@ TEST(Mutants, TheRightRuleIsBlamed) {
   EXPECT_GT(blamed.right * 100, blamed.rules * 85);
 }
 
+suite::ImplementationRun whole_suite(const runner::SubjectFactory& factory) {
+  static const suite::Cases cases = suite::Cases::own();
+  suite::ImplementationRun all;
+  for (const suite::SuiteCase& each : cases.all()) {
+    suite::CaseRun& one = all.cases.emplace_back(each.blank());
+    one.profile = "paper";
+    one.result = run({each.file, each.one}, factory);
+    if (one.result.failures.empty()) continue;
+    suite::compare_with_machine(each.file->file, *each.one, one);
+  }
+  return all;
+}
+
 // One mistake shows in cases of many rules. Half of the rules that are blamed there are not called
 // broken, and hardly ever is that of the mistake among them.
 TEST(Mutants, TheWholeSuiteCallsFewRulesBroken) {
   constexpr std::size_t kEach = 12;  // Takes a third of a second for each mutant.
-  const suite::Cases cases = suite::Cases::own();
   Blame blamed;
   Blame broken;
   std::size_t hit = 0;
@@ -129,14 +142,7 @@ TEST(Mutants, TheWholeSuiteCallsFewRulesBroken) {
   for (std::size_t i = 0; i < named().mutants.size(); i += kEach) {
     const Mutant& mutant = named().mutants[i];
     if (!named().found[i].killed) continue;
-    suite::ImplementationRun all;
-    for (const suite::SuiteCase& each : cases.all()) {
-      suite::CaseRun& one = all.cases.emplace_back(each.blank());
-      one.profile = "paper";
-      one.result = run({each.file, each.one}, mutant.factory());
-      if (one.result.failures.empty()) continue;
-      suite::compare_with_machine(each.file->file, *each.one, one);
-    }
+    suite::ImplementationRun all = whole_suite(mutant.factory());
     count(all, mutant, blamed);
     suite::find_causes(all);
     ++tried;
@@ -151,6 +157,92 @@ TEST(Mutants, TheWholeSuiteCallsFewRulesBroken) {
   EXPECT_GT(tried, 20U);
   EXPECT_LT(broken.rules * 10, blamed.rules * 6);
   EXPECT_GE(hit * 10, tried * 9);
+}
+
+struct AckFaults {
+  bool unreliable = false;     // Are acked.
+  bool broadcasts = false;     // Are acked, by motes.
+  std::uint8_t unacked = 255;  // What is for this application is not acked.
+  bool next_number = false;    // Acks name the next number.
+};
+
+StepMaker acking_wrongly(AckFaults faults) {
+  const auto step = [=](Moment& moment) {
+    const Frame* const frame = moment.heard(am::kNet);
+    if (frame != nullptr && is_net(*frame) && !is_ack(*frame)) {
+      Forged& heard = moment.forge(*frame);
+      std::uint8_t& reliable = heard.bytes[net::kReliable];
+      const std::uint16_t dest = get(heard, net::kDestDevid);
+      if (dest == own(moment).devid && get(heard, net::kDestPid) == own(moment).pid) {
+        const bool unacked = reliable == 1 && heard.bytes[net::kAppId] == faults.unacked;
+        if (faults.unreliable && reliable == 0) reliable = 1;
+        if (unacked) reliable = 0;
+      }
+      const bool broadcast = dest == machine::kBroadcastDevid && moment.is(Role::kMote);
+      if (faults.broadcasts && broadcast && reliable == 1) {
+        put(heard, net::kDestDevid, own(moment).devid);
+      }
+      moment.honest(machine::Heard{heard.frame});
+    } else {
+      moment.honest();
+    }
+    if (!faults.next_number) return;
+    moment.rewrite([&](const Action& action) {
+      if (action.what != Action::What::kTransmit) return moment.keep(action);
+      Transmit sent = moment.sent(action);
+      if (is_ack(sent) && get(sent, net::kSrcDevid) == own(moment).devid) {
+        put(sent, net::kPaperSeq, get(sent, net::kPaperSeq) + 1U);
+      }
+      moment.keep(action, sent);
+    });
+  };
+  return [=]() -> Step { return step; };
+}
+
+// Faults that prove themselves are all broken, although acks of one look like acks of the other. Of
+// one fault only its own rules are, although it makes lines of others fail.
+TEST(Mutants, IndependentFaultsAreAllBroken) {
+  using Rules = std::set<std::string>;
+  constexpr auto kMockup = static_cast<std::uint8_t>(rubicon::Component::kMockup);
+  const struct {
+    AckFaults faults;
+    Rules broken;
+  } rows[] = {
+      {{.unreliable = true}, {"T2-UNRELIABLE"}},
+      {{.unacked = component::kControlLayer}, {"T2-ACK"}},
+      {{.next_number = true}, {"T2-ACK", "T2-CONTENT"}},  // The message has no ack of its own.
+      {{.unreliable = true, .broadcasts = true}, {"T2-UNRELIABLE", "T2-BROADCAST"}},
+      {{.unreliable = true, .broadcasts = true, .unacked = component::kControlLayer},
+       {"T2-UNRELIABLE", "T2-BROADCAST", "T2-ACK"}},
+      {{.unacked = kMockup, .next_number = true}, {"T2-ACK", "T2-CONTENT"}},
+      {{.unreliable = true, .unacked = kMockup, .next_number = true},
+       {"T2-UNRELIABLE", "T2-ACK", "T2-CONTENT"}},
+  };
+  for (const auto& row : rows) {
+    suite::ImplementationRun run = whole_suite(wrapped(acking_wrongly(row.faults)));
+    suite::find_causes(run);
+    Rules broken;
+    std::size_t suspected = 0;
+    for (const suite::RequirementSummary& rule : suite::by_requirement(run)) {
+      if (rule.broken > 0) broken.emplace(trace::requirement_text(rule.requirement));
+      suspected += rule.broken == 0 && rule.suspected > 0;
+    }
+    EXPECT_EQ(broken, row.broken);
+    EXPECT_GT(suspected, 3U) << "or nothing of others fails";
+  }
+}
+
+TEST(Mutants, WhatIsDeliveredTwiceWasNotLostFromAFullBuffer) {
+  const auto twice = std::ranges::find(named().mutants, "delivered_twice", &Mutant::name);
+  ASSERT_NE(twice, named().mutants.end());
+  suite::ImplementationRun run = whole_suite(twice->factory());
+  suite::find_causes(run);
+  std::map<std::string, std::size_t> broken;
+  for (const suite::RequirementSummary& rule : suite::by_requirement(run)) {
+    broken.emplace(trace::requirement_text(rule.requirement), rule.broken);
+  }
+  EXPECT_GT(broken["N2-IN-ORDER"], 0U);
+  EXPECT_EQ(broken["N2-IN-FULL"], 0U);
 }
 
 // Makes a wrapper that acks what must not be acked, 800 ticks after it came by its line.

@@ -293,6 +293,7 @@ class Chart {
     row.absent = true;
     row.number = std::to_string(failure.to);
     row.detail = asked ? "no " + short_text(asked->message) : "it broke";
+    row.detail += elsewhere_text(failure);
     point_at(row);
     const auto next = std::find_if(rows_.begin(), rows_.end(), [&](const SequenceRow& other) {
       return std::stoull(other.number) > failure.to;

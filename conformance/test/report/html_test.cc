@@ -339,6 +339,22 @@ TEST(Html, SaysWhereItCannotWrite) {
   }
 }
 
+TEST(HtmlData, AChartSaysWhenWhatIsMissingCameAfterAll) {
+  for (const bool late : {false, true}) {
+    SuiteRun run;
+    ImplementationRun& out = run.implementations.emplace_back();
+    out.cases = {one("j4.accept")};
+    runner::Failure failure{.expected = "0..3 m5 > rA ack_join(*)", .to = 3, .node = "m5"};
+    if (late) failure.elsewhere = 5;
+    out.cases[0].result.failures = {failure};
+    out.cases[0].result.verdict = runner::CaseVerdict::kFail;
+    const Json data = Json::parse(html_data(run, nullptr, {{CaseLinks{"a.rtr", ""}}}));
+    const Json& shown = data["cases"][0]["runs"][0];
+    const std::string chart = data["charts"][shown["chart"].get<std::size_t>()];
+    EXPECT_THAT(chart, HasSubstr(late ? "no ack_join, it came at 5" : "no ack_join<"));
+  }
+}
+
 TEST(HtmlData, KnowsTheEarlierRunAndWhatBrokeARule) {
   SuiteRun run;
   ImplementationRun& out = run.implementations.emplace_back();

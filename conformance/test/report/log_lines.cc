@@ -113,6 +113,10 @@ bool is_broken_by(const runner::Failure& failure, const Line& line) {
          failure.text.ends_with(line.link + " " + trace::print(line.message));
 }
 
+std::string elsewhere_text(const runner::Failure& failure) {
+  return failure.elsewhere ? ", it came at " + std::to_string(*failure.elsewhere) : "";
+}
+
 std::optional<Line> asked_line(const runner::Failure& failure) {
   const trace::Parsed parsed =
       trace::parse_syntax("%rtr 1\ncase x\n" + failure.expected + "\n", "expected");

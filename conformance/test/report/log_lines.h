@@ -28,6 +28,9 @@ bool is_broken_by(const runner::Failure& failure, const trace::Line& line);
 /// Returns the golden trace's line that was not kept; nothing if the failure names none.
 std::optional<trace::Line> asked_line(const runner::Failure& failure);
 
+/// Returns ", it came at 4500" for what came too early or too late, else nothing.
+std::string elsewhere_text(const runner::Failure& failure);
+
 constexpr std::size_t kNoLine = std::numeric_limits<std::size_t>::max();
 /// Returns for each line the earlier one that shows the same frame: as its sender emitted it, or as
 /// another node was given it. kNoLine if it is the first. Golden traces hand acks on with a code,

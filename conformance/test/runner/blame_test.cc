@@ -52,6 +52,12 @@ TEST(Blame, WhatIsLeftForTheLocalIslandGoesToItsWrongAddressToo) {
   EXPECT_EQ(blamed(rules, {"differs", "am"}), "N4-MOTE");
 }
 
+TEST(Blame, WhatWaitedAndIsDeliveredTwiceSaysNothingOfAFullBuffer) {
+  const Rules rules = {"N2-IN-FULL", "N2-IN-ORDER"};
+  EXPECT_EQ(blamed(rules, {"app", "received", "again"}), "N2-IN-ORDER");
+  EXPECT_EQ(blamed(rules, {"app", "received", "new"}), "N2-IN-FULL");
+}
+
 TEST(Blame, AReportIsANetMsgOnItsLine) {
   const Rules rules = {"N6-ONCE", "J6-REPEAT"};
   EXPECT_EQ(blamed(rules, {"serial", "net_msg", "new"}), "J6-REPEAT");

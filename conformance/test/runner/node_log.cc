@@ -41,6 +41,8 @@ trace::Concrete message_of(const Output& output) {
   return trace::concrete(output.news);
 }
 
+constexpr std::string_view kAckedNumber = "payload.body.seq_num";
+
 bool is_ack(const trace::Message& message) {
   const trace::Value* const kind = message.find("payload.trans_id");
   return kind != nullptr && kind->text == "rubicon_ack";
@@ -104,7 +106,7 @@ void Target::call(Ticks now, const trace::Concrete& message) {
 
 NodeLog::NodeLog(const trace::Scope& scope, const trace::Case& one, const trace::NodeHeader& header,
                  std::unique_ptr<Target> target)
-    : name_(header.name), target_(std::move(target)) {
+    : name_(header.name), id_(header.id.value_or(0)), target_(std::move(target)) {
   link_names_ = {{Link::kRadio, "rA"}, {Link::kSerial, "serA"}, {Link::kPeis, "peis"}};
   for (const trace::Line* line : one.lines()) {
     if (line->node != name_) continue;
@@ -144,7 +146,7 @@ void NodeLog::read_outputs() {
     const auto order = orders_.emplace(order_of(link_name(output), message.message), next_.size());
     if (order.second) next_.push_back(0);
     seen_.push_back({message.message.name, link_name(output), message.size_rule, message.excess,
-                     order.first->second, is_foreign(output)});
+                     order.first->second, prompts_.size(), is_foreign(output)});
     const Seen& seen = seen_.back();
     (seen.foreign ? foreign_links_ : links_).emplace(seen.link);
     trace::Line line =
@@ -201,6 +203,7 @@ Window NodeLog::given(Ticks now, trace::Line line) {
     line.time = trace::Time::at(given.from);
     log_.back() = logged(given.from, line);
   }
+  note_prompt(given.from, line.message);
   read_outputs();
   return given;
 }
@@ -305,7 +308,29 @@ const Output* NodeLog::forbidden(const trace::Line& line, const Window& window,
   return matching(line, window, bindings, false);
 }
 
-NearestMiss NodeLog::nearest_miss(const trace::Line& line, const Window& window, Ticks latest,
+// What came before the last message was no answer to it, and what comes at the very tick of a later
+// one is the answer to that.
+const Output* NodeLog::too_early_or_late(const trace::Line& line, const Window& window,
+                                         const trace::Bindings& bindings) {
+  Ticks since = 0;
+  for (const Prompt& prompt : prompts_) {
+    if (prompt.time <= window.from) since = prompt.time;
+  }
+  const Output* const early =
+      since < window.from ? forbidden(line, {since, window.from - 1}, bindings) : nullptr;
+  if (early != nullptr) return early;
+  const Ticks latest = window.to + kLateTicks;
+  const Output* late = forbidden(line, {window.to + 1, latest}, bindings);
+  const auto is_prompted = [&] {
+    return std::ranges::any_of(prompts_,
+                               [&](const Prompt& prompt) { return prompt.time == late->time; });
+  };
+  while (late != nullptr && is_prompted())
+    late = forbidden(line, {late->time + 1, latest}, bindings);
+  return late;
+}
+
+NearestMiss NodeLog::nearest_miss(const trace::Line& line, const Window& window,
                                   const trace::Bindings& bindings) {
   constexpr std::size_t kLooksMost = 100;
   NearestMiss miss{"it emitted nothing there", {"missing"}};
@@ -315,7 +340,8 @@ NearestMiss NodeLog::nearest_miss(const trace::Line& line, const Window& window,
     miss = {fmt::format("at {} it came before one that was to come first", late->time),
             {"differs", "order"},
             late->time};
-  } else if (const Output* output = forbidden(line, {0, latest}, bindings)) {
+  } else if (const Output* output = too_early_or_late(line, window, bindings)) {
+    miss.elsewhere = output->time;
     miss.text =
         fmt::format("it came at {}, not from {} to {}", output->time, window.from, window.to);
   } else {
@@ -325,6 +351,11 @@ NearestMiss NodeLog::nearest_miss(const trace::Line& line, const Window& window,
     const auto differ = [&](std::size_t i) {
       if (seen_[i].name != line.message.name) return false;
       const trace::Match match = trace::compare(line, message_at(i), bindings);
+      const auto says_whose = [](const trace::Difference& each) {
+        return each.path == "dest" || each.path == kAckedNumber;
+      };
+      // The ack of another message is no attempt at this one.
+      if (std::ranges::any_of(match.differences, says_whose) && acked(i)) return false;
       if (match.distance() < best) {
         best = match.distance();
         const Output& one = target_->outputs()[i];
@@ -368,6 +399,53 @@ Evidence NodeLog::evidence_of(const Output& output) {
   return {std::string(output.is_frame ? trace::link_text(kind_of(output)) : "app"),
           is_ack(message) ? "ack" : message.name, text_at("result"),
           again_[place_of(output)] ? "again" : "new"};
+}
+
+void NodeLog::note_prompt(Ticks time, const trace::Message& message) {
+  const trace::Shape* const shape = trace::Schema::get().find(message.name);
+  const auto what = shape && shape->app ? shape->app->what : trace::AppWhat::kFrame;
+  if (what != trace::AppWhat::kFrame && what != trace::AppWhat::kCall) return;
+  const auto value_at = [&](const char* path) {
+    const trace::Value* const value = message.find(path);
+    return value ? *value : trace::Value();
+  };
+  std::string kind = message.name;
+  for (const char* path : {"reliable", "payload.trans_id"}) {
+    const trace::Value value = value_at(path);
+    kind += fmt::format(" {}{}", value.text, value.number);
+  }
+  if (const trace::Value dest = value_at("dest"); dest.is(trace::Value::Kind::kAddress)) {
+    const auto is_all = [](const trace::Value& each) { return each.text == "all"; };
+    if (std::ranges::any_of(dest.items, is_all)) {
+      kind += " to all";
+    } else if (dest.items.back() != trace::Value::of(id_)) {
+      kind += " to another";
+    }
+  }
+  prompts_.push_back({time, std::move(kind), value_at("src"), value_at("seq_num")});
+}
+
+const NodeLog::Prompt* NodeLog::acked(std::size_t place) const {
+  const trace::Message& message = message_at(place).message;
+  const trace::Value* const dest = message.find("dest");
+  const trace::Value* const number = message.find(kAckedNumber);
+  if (!is_ack(message) || dest == nullptr || number == nullptr) return nullptr;
+  for (std::size_t i = seen_[place].prompts; i > 0; --i) {
+    const Prompt& prompt = prompts_[i - 1];
+    if (prompt.src == *dest && prompt.number == *number) return &prompt;
+  }
+  return nullptr;
+}
+
+std::string NodeLog::prompt_of(const Output& output, std::int64_t response) const {
+  const std::size_t place = place_of(output);
+  if (is_ack(message_at(place).message)) {
+    const Prompt* const prompt = acked(place);
+    return prompt ? prompt->kind : std::string();
+  }
+  const std::size_t before = seen_[place].prompts;
+  if (before == 0 || output.time - prompts_[before - 1].time > response) return {};
+  return prompts_[before - 1].kind;
 }
 
 std::vector<Overlong> NodeLog::overlong() const {

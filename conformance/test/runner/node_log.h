@@ -24,12 +24,16 @@ struct LoggedLine {
   std::string text;
 };
 
+/// How long a missing output is awaited beyond its time.
+constexpr Ticks kLateTicks = 1500;
+
 /// How the closest output missed a line: one of the same message in its window, or the very output
-/// at another time.
+/// too early or too late.
 struct NearestMiss {
   std::string text;
   Evidence evidence;
-  std::optional<Ticks> time = {};  // When it came, if it came in the window and differs.
+  std::optional<Ticks> time = {};       ///< When it came, if it came in the window and differs.
+  std::optional<Ticks> elsewhere = {};  ///< When it came, if that was not in the window.
 };
 
 /// An output with bytes after the content of a message that has one size only.
@@ -63,15 +67,20 @@ class NodeLog {
   /// Returns the first output that breaks a `!>` line, or null.
   const Output* forbidden(const trace::Line& line, const Window& window,
                           const trace::Bindings& bindings);
-  /// Explains why no output was taken, by those until `latest`. Where many come in the window that
-  /// have the name of its message, the first ones tell how they differ.
-  NearestMiss nearest_miss(const trace::Line& line, const Window& window, Ticks latest,
+  /// Explains why no output was taken. Where many come in the window that have the name of its
+  /// message, the first ones tell how they differ. The very output counts outside of the window
+  /// from the message on that the node was given last before it, and for kLateTicks after it.
+  NearestMiss nearest_miss(const trace::Line& line, const Window& window,
                            const trace::Bindings& bindings);
   /// Returns the outputs that are longer than their message, the first of each rule that gives
   /// its size.
   std::vector<Overlong> overlong() const;
   std::string text_of(const Output& output) const;
   Evidence evidence_of(const Output& output);
+  /// Returns the kind of message that the output answers: its name, whether it is reliable, its
+  /// TRANSID, and whether it is for all or another node. An ack names its message; anything else
+  /// answers what was given last, at most `response` ticks before. Empty if there is none.
+  std::string prompt_of(const Output& output, std::int64_t response) const;
 
   int link_acks_to_come = 0;
 
@@ -83,8 +92,16 @@ class NodeLog {
     ReqId size_rule = ReqId::kNone;  // As in trace::Concrete.
     std::size_t excess = 0;
     std::size_t order = 0;               // What is in one order has the same number here.
+    std::size_t prompts = 0;             // So many were given before.
     bool foreign = false;                // `*` does not mean it.
     const trace::Line* taken = nullptr;  // By this line, if by any.
+  };
+  // A message that the node was given, and may answer.
+  struct Prompt {
+    Ticks time = 0;
+    std::string kind;     // As prompt_of() returns it.
+    trace::Value src;     // For an ack of it.
+    trace::Value number;  // So is this.
   };
   // The outputs from one to before another.
   struct Span {
@@ -97,6 +114,10 @@ class NodeLog {
   static bool is_about(const trace::Line& line, const Seen& seen);
   /// Notes when the last line of the log was given.
   Window given(Ticks now, trace::Line line);
+  /// Notes a frame or a call that the node was given.
+  void note_prompt(Ticks time, const trace::Message& message);
+  /// Returns the message that the output acks, or null.
+  const Prompt* acked(std::size_t place) const;
   /// Returns the message of an output, until that of another is asked for.
   const trace::Concrete& message_at(std::size_t place) const;
   /// Returns the outputs that may be in the window.
@@ -111,6 +132,9 @@ class NodeLog {
   /// null; `in_turn`: of those whose turn it is.
   const Output* matching(const trace::Line& line, const Window& window,
                          const trace::Bindings& bindings, bool in_turn);
+  /// Returns the very output that the line asks for, too early or too late, or null.
+  const Output* too_early_or_late(const trace::Line& line, const Window& window,
+                                  const trace::Bindings& bindings);
   void take(const Output& output, const trace::Line& line);
   std::size_t place_of(const Output& output) const {
     return static_cast<std::size_t>(&output - target_->outputs().data());
@@ -119,8 +143,10 @@ class NodeLog {
   std::string_view link_name(const Output& output) const;
 
   std::string name_;
+  std::int64_t id_ = 0;
   std::unique_ptr<Target> target_;
   std::map<machine::Link, std::string> link_names_;
+  std::vector<Prompt> prompts_;
   std::vector<Seen> seen_;                               // One for each output of the target.
   std::unordered_map<std::string, std::size_t> orders_;  // Their numbers.
   std::vector<std::size_t> next_;  // By order: the output after the last taken one.

@@ -28,7 +28,6 @@ namespace {
 using trace::Line;
 using trace::Op;
 
-constexpr Ticks kLateTicks = 1500;  // How long a missing output is awaited beyond its time.
 constexpr std::int64_t kLastTick = INT32_MAX;  // Clocks wrap after twice that.
 constexpr Ticks kGrainTicks = 10;  // Of an adapter's own clock, or of its rate in a second.
 constexpr std::int64_t kRealTicksMax = 600 * machine::kTicksPerSecond;  // A wait in real time.
@@ -447,12 +446,12 @@ class Run {
     for (const Missing& one : missing_) {
       since = std::min(since, one.wide.from);
       const Line& line = *one.timed.line;
-      NearestMiss miss =
-          node_of(line)->nearest_miss(line, one.wide, one.wide.to + kLateTicks, bindings_);
+      NearestMiss miss = node_of(line)->nearest_miss(line, one.wide, bindings_);
       fail(result, line, one.timed.window, one.wide.to, std::move(miss.text), miss.evidence);
       // An output that differs broke the line when it came: what another line says of the same
       // output must not come first and take the blame.
       if (miss.time) result.failures.back().broken_at = *miss.time;
+      result.failures.back().elsewhere = miss.elsewhere;
       refusals_.blame(line, result.failures.back());
     }
     for (const Line* l : skipped_) allowed_.push_back({l, {names_lost(*l) ? 0 : since, now_}, 0});
@@ -469,6 +468,9 @@ class Run {
       fail(result, *one.line, one.window, output->time,
            fmt::format("at {} it emitted {}", output->time, node.text_of(*output)),
            node.evidence_of(*output));
+      const trace::Parameter* const stated = trace::find_parameter("response");
+      const std::int64_t response = stated ? value(node.name(), stated->id) : kLastTick;
+      result.failures.back().prompt = node.prompt_of(*output, response);
     }
     std::stable_sort(
         result.failures.begin(), result.failures.end(), [](const Failure& a, const Failure& b) {

@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -54,6 +55,9 @@ struct Failure {
   std::string message = {};  ///< That of the line.
   /// What is wrong with one that came: the words of runner::Evidence. Empty if none came.
   std::set<std::string, std::less<>> symptom = {};
+  /// When what the line asks for came too early or too late.
+  std::optional<Ticks> elsewhere = {};
+  std::string prompt = {};  ///< The kind of message that it answered: NodeLog::prompt_of().
   /// Rules by which the reference machine did what the node did not, there or before.
   std::set<std::string> left_undone = {};
 

@@ -11,6 +11,7 @@
 #include <tuple>
 #include <utility>
 
+#include "codec/reflect/requirements.h"
 #include "conformance/test/runner/blame.h"
 #include "conformance/test/runner/subject_target.h"
 #include "conformance/trace/protocol.h"
@@ -81,6 +82,26 @@ std::string symptom_of(const Failure& failure) {
   return fmt::format("{} {}", failure.message, fmt::join(seen, " "));
 }
 
+// Returns whether a line proves by itself that its rule is broken. Either the node acked a message,
+// but with another content; or it answered one as this rule alone forbids, which the line or the
+// rule describes. What the application is told proves nothing: it reports what became of a message.
+bool is_proof(const Failure& failure) {
+  const std::string& rule = failure.requirements.front();
+  runner::Evidence what = failure.symptom;
+  const auto has = [&](std::string_view word) { return what.contains(word); };
+  if (has("differs")) return has("ack") && !has("am") && !has("dest") && !has("order");
+  const reflect::Requirement& known = reflect::requirement(trace::requirement_id(rule));
+  if (!failure.forbidden || !known.forbids || !failure.suspected.empty()) return false;
+  if (failure.prompt.empty() || has("app")) return false;
+  for (const char* link : {"radio", "serial", "peis"}) what.erase(link);
+  return failure.message != "*" || runner::shows(rule, what);
+}
+
+// Returns the same with the kind of message that was answered.
+std::string after_prompt(const std::string& symptom, const Failure& failure) {
+  return symptom.empty() ? symptom : fmt::format("{} after {}", symptom, failure.prompt);
+}
+
 // In how many cases a rule is blamed, and how many that name it pass.
 struct Record {
   std::size_t broken = 0;
@@ -133,8 +154,9 @@ void find_causes(ImplementationRun& run) {
       if (failure.implied || failure.crash || failure.requirements.empty()) continue;
       const std::string& rule = failure.requirements.front();
       here.insert(rule);
-      if (std::string symptom = symptom_of(failure); !symptom.empty()) {
-        blamed_for[std::move(symptom)].insert(rule);
+      if (const std::string symptom = symptom_of(failure); !symptom.empty()) {
+        blamed_for[symptom].insert(rule);
+        blamed_for[after_prompt(symptom, failure)].insert(rule);
       }
       blamed.push_back(&failure);
     }
@@ -148,9 +170,12 @@ void find_causes(ImplementationRun& run) {
     }
   }
   const auto causes_of = [&](const Failure& failure) {
+    const bool proof = is_proof(failure);
     std::set<std::string> out = failure.left_undone;
-    for (std::string& rule : failure.rules()) out.insert(std::move(rule));
-    const auto alike = blamed_for.find(symptom_of(failure));
+    out.insert(failure.requirements.front());
+    if (!proof) out.insert(failure.suspected.begin(), failure.suspected.end());
+    const std::string symptom = symptom_of(failure);
+    const auto alike = blamed_for.find(proof ? after_prompt(symptom, failure) : symptom);
     if (alike != blamed_for.end()) out.insert(alike->second.begin(), alike->second.end());
     const Record& own = records.at(failure.requirements.front());
     std::erase_if(out, [&](const std::string& rule) {

@@ -15,7 +15,10 @@ namespace rubric::suite {
 void compare_with_machine(const trace::File& head, const trace::Case& one, CaseRun& out);
 
 /// Calls failures implied which a rule explains that explains more of them than the one they blame.
-/// It is a rule that failures blame in as many cases, and whose cases pass as seldom.
+/// It is a rule that failures blame in as many cases, and whose cases pass as seldom. Failures that
+/// look alike may have one cause; of those that prove their rule by themselves, only where the node
+/// answered messages of one kind: an ack of a broadcast is not explained by acks of what is
+/// unreliable.
 void find_causes(ImplementationRun& run);
 
 }  // namespace rubric::suite

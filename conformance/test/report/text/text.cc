@@ -96,7 +96,8 @@ std::string log_around(const CaseRun& one, const runner::Failure& failure, std::
       out += text::wrapped(head + fmt::format("{:<9} ", window_text(failure)),
                            failure.forbidden || !asked
                                ? "here"
-                               : fmt::format("no {} that is as the line says", asked->message.name),
+                               : fmt::format("no {} that is as the line says{}",
+                                             asked->message.name, elsewhere_text(failure)),
                            width);
       continue;
     }
@@ -128,7 +129,7 @@ std::string chart_around(const CaseRun& one, const runner::Failure& failure, std
       const std::optional<Line> asked = asked_line(failure);
       if (asked) drawn.from = stage.column(asked->node);
       drawn.number = std::to_string(failure.to);
-      drawn.label = asked ? "no " + asked->message.name : "here";
+      drawn.label = asked ? "no " + asked->message.name + elsewhere_text(failure) : "here";
     }
     drawn.marked = row.marked;
     sequence.rows.push_back(std::move(drawn));
