@@ -1,7 +1,11 @@
 #include "conformance/check/identify/line_losses.h"
 
+#include <algorithm>
 #include <cstdint>
+#include <set>
 #include <utility>
+
+#include "conformance/check/message.h"
 
 namespace rubric::check {
 namespace {
@@ -92,6 +96,35 @@ Losses find_losses(const Run& run, const Identity& who, const Options& options) 
     if (run.past.lossy_taps[tap]) out[tap].any = true;
   }
   return {std::move(out), air.many};
+}
+
+bool misses_passed(const Run& run, const Identity& who, std::uint16_t sink) {
+  const Device& its = who.devices[sink];
+  std::set<std::pair<std::uint64_t, std::uint16_t>> air;
+  std::set<std::pair<std::uint64_t, std::uint16_t>> line;
+  const auto of_line = [&](const Observation& seen) {
+    return std::ranges::find(its.taps, seen.tap) != its.taps.end();
+  };
+  const auto first = std::ranges::find_if(run.seen, of_line);
+  const auto end = std::find_if(run.seen.rbegin(), run.seen.rend(), of_line).base();
+  for (auto at = first; at < end; ++at) {
+    Net net;
+    if (at->frame.type != am::kNet || !parse_net(at->frame.payload, net) || !net.sound) continue;
+    if (of_line(*at)) {
+      line.emplace(net.addresses(), net.seq_num);
+      continue;
+    }
+    const bool sent = who.marks[static_cast<std::size_t>(at - run.seen.begin())].device == sink;
+    const bool down = sent && net.src.devid == machine::kNullDevid;
+    const bool up = !sent && at->frame.dest == its.am && net.src.pid == its.island &&
+                    (net.dest.pid != its.island || net.dest.devid == machine::kNullDevid);
+    if (at->kind == Observation::Kind::kRadio && (down || up)) {
+      air.emplace(net.addresses(), net.seq_num);
+    }
+  }
+  const auto missed = static_cast<std::size_t>(
+      std::ranges::count_if(air, [&](const auto& one) { return !line.contains(one); }));
+  return missed > 0 && kHoleShare * missed >= air.size();
 }
 
 }  // namespace rubric::check

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "conformance/check/identify/identity.h"
@@ -22,5 +23,10 @@ struct Losses {
 };
 
 Losses find_losses(const Run& run, const Identity& who, const Options& options);
+
+/// Returns whether the line of a sink that is captured with the air may miss more than it shows by
+/// numbers: of what passed the sink while the line was recorded, not little is on the air alone.
+/// A sink may have lost what no link acknowledgement shows it to have received.
+bool misses_passed(const Run& run, const Identity& who, std::uint16_t sink);
 
 }  // namespace rubric::check

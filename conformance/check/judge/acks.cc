@@ -468,9 +468,11 @@ void Acks::missing_ack(std::uint16_t node, Arrived& arrived, std::int64_t now_us
       context_.who.damaged(arrived.place.time_us, now_us)) {
     severity = Severity::kInconclusive;
   } else if (by_radio) {
-    severity = context_.without(node, arrived.place.time_us, now_us);
+    severity = context_.absent_on_line(node, context_.without(node, arrived.place.time_us, now_us));
+  } else {
+    severity = context_.own_absent_on_line(node, severity);
   }
-  context_.report("T2-ACK"_rule, context_.absent_on_line(node, severity), arrived.place, node,
+  context_.report("T2-ACK"_rule, severity, arrived.place, node,
                   {"It surely received " + name_of(arrived.net) +
                        ", reliable, and sent no ack within " + ms_text(context_.response_us(node)) +
                        (lives && !device.hearing ? ", though it sent other frames later." : "."),

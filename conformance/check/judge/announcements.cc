@@ -313,7 +313,7 @@ void Announcements::overdue_reports(SinkWatch& sink, std::int64_t end_us) {
                     room && !may_be_lost(sink, watch) &&
                             !context_.who.damaged(watch.admitted.time_us, now_us) &&
                             context_.line_recorded(sink.device, watch.admitted.time_us)
-                        ? context_.absent_on_line(sink.device, Severity::kFail)
+                        ? context_.own_absent_on_line(sink.device, Severity::kFail)
                         : Severity::kInconclusive,
                     watch.admitted, sink.device,
                     {"The ack_join of mote " + number(am) +

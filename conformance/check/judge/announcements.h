@@ -5,7 +5,8 @@
 // hypotheses of sink_join.h, and whether one is missing. A serial_joined is due within the response
 // time after the ack_join, or after the serial line was switched on again (by a whole log).
 // Where the ack_join may have found the incoming buffer full (decision 122), one that is missing is
-// inconclusive; where the list may have been full when it came, nothing is owed.
+// inconclusive, and where the capture of the line misses other things that passed the sink; where
+// the list may have been full when it came, nothing is owed.
 #pragma once
 
 #include <cstdint>

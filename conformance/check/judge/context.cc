@@ -258,6 +258,15 @@ Severity Context::absent_on_line(std::uint16_t node, Severity severity) {
   return severity;
 }
 
+Severity Context::own_absent_on_line(std::uint16_t node, Severity severity) {
+  const Device& d = device(node);
+  const std::uint16_t sink = d.role == machine::Role::kBaseStation ? d.partner : node;
+  const auto [known, is_new] = misses_passed_.try_emplace(sink);
+  if (is_new) known->second = !d.whole && sink != kNobody && misses_passed(run, who, sink);
+  return absent_on_line(node,
+                        known->second ? std::min(severity, Severity::kInconclusive) : severity);
+}
+
 bool Context::has_lines(std::uint16_t node) const {
   const Device& d = device(node);
   if (d.role == machine::Role::kMote || d.whole || !d.taps.empty()) return true;
@@ -269,11 +278,6 @@ bool Context::line_recorded(std::uint16_t sink, std::int64_t time_us) const {
   return run.past.until_us >= 0 || std::ranges::all_of(device(sink).taps, [&](std::uint32_t tap) {
            return tap_from_us[tap] <= time_us;
          });
-}
-
-bool Context::by_peis(std::uint16_t node, std::uint16_t island) const {
-  const Device& d = device(node);
-  return d.role == machine::Role::kBaseStation && island != d.island && !logs_peis(node);
 }
 
 void Context::needs_host(std::uint16_t sink, const Place& at) {

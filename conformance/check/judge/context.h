@@ -271,7 +271,10 @@ struct Context {
     return node < run.nodes.size() && run.nodes[node].peis;  // A log's nodes are the first devices.
   }
   /// Returns whether messages of that island come to the node where no log and no tap is read.
-  bool by_peis(std::uint16_t node, std::uint16_t island) const;
+  bool by_peis(std::uint16_t node, std::uint16_t island) const {
+    const Device& d = device(node);
+    return d.role == machine::Role::kBaseStation && island != d.island && !logs_peis(node);
+  }
   /// Counts something that depends on what came down such a line; finish() reports all at once.
   void needs_host(std::uint16_t sink, const Place& at);
   /// Returns `severity`, or kInconclusive if frames are missing from the capture of the line of
@@ -280,6 +283,9 @@ struct Context {
   /// Returns the same where one frame that `node` owes on the line is not there: kInconclusive also
   /// for as many as the recorder may have missed of a line that shows no loss. Counts it as one.
   Severity absent_on_line(std::uint16_t node, Severity severity);
+  /// Returns the same of a frame that `node` makes itself: kInconclusive also where the capture of
+  /// the line misses much of what it passes on (misses_passed).
+  Severity own_absent_on_line(std::uint16_t node, Severity severity);
   /// Returns whether the run has all lines of the node: a mote has the air alone, of a sink or a
   /// base station nothing that depends on its serial line is known without it.
   bool has_lines(std::uint16_t node) const;
@@ -295,6 +301,7 @@ struct Context {
   void report_stranger(const Observation& seen, std::uint16_t node);
 
  private:
+  std::map<std::uint16_t, bool> misses_passed_;  // By sink; found where it is asked.
   // Returns the taps of the node's serial line; a base station has its sink's.
   const std::vector<std::uint32_t>& lines_of(std::uint16_t node) const;
 

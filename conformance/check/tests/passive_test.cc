@@ -53,6 +53,25 @@ TEST(Passive, AMemberThatIsNeverReportedWhileALaterOneIs) {
             "");
 }
 
+// A capture that misses other things of the line may miss the report as well; one that misses next
+// to nothing does not.
+TEST(Passive, AReportMayBeWhereOtherFramesOfTheLineAre) {
+  const auto with = [](std::uint16_t messages, bool up, bool down) {
+    Script script = two_joins([](Script&) {});
+    for (std::uint16_t i = 2; i <= messages; ++i) {
+      script.net(1500 + 20 * i, 3, 1, update(3, i));
+      if (up || i > 2) script.up(1515 + 20 * i, update(3, i).forwarded());
+    }
+    if (down) script.down(5000, to_mote(7));
+    script.net(5010, 1, 2, to_mote(7), 11).net(6000, 3, 1, update(3, 900));
+    return script.up(6015, update(3, 900).forwarded());
+  };
+  EXPECT_EQ(failures_of(with(20, true, true)), "J6-REPORT");
+  EXPECT_EQ(failures_of(with(20, false, true)), "");
+  EXPECT_EQ(failures_of(with(20, true, false)), "");
+  EXPECT_EQ(failures_of(with(100, false, true)), "J6-REPORT");
+}
+
 TEST(Passive, OneThatIsReportedAfterALaterOneIsNotMissing) {
   Script script;
   script.request(0, 2, 100).reply(10, 11, 2, 100, 10).ack_join(20, 11, 2, 100).link_ack();

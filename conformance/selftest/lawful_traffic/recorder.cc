@@ -69,6 +69,12 @@ void drop(Traffic& traffic, Random& random, int percent) {
 }
 void drops(Traffic& traffic, Random& random) { drop(traffic, random, 20); }
 void drops_few(Traffic& traffic, Random& random) { drop(traffic, random, 5); }
+void drops_on_lines(Traffic& traffic, Random& random) {
+  std::erase_if(traffic.packets, [&](const LawfulPacket& packet) {
+    return packet.interface != "radio" && random.chance(20);
+  });
+  traffic.sniffer_complete = false;
+}
 void drops_and_steps(Traffic& traffic, Random& random) {
   drops(traffic, random);
   steps_often(traffic, random);
@@ -120,6 +126,7 @@ constexpr Recorder kRecorders[] = {
     {"drifts", "the clock is wrong by 500 ppm", drifts},
     {"drops", "a fifth of all packets is missing, on the air and on lines", drops},
     {"drops_few", "a twentieth is missing", drops_few},
+    {"drops_on_lines", "a fifth of what is on lines alone is missing", drops_on_lines},
     {"drops_and_steps", "a fifth is missing, and the clock steps four times", drops_and_steps},
     {"radio_alone", "what is on the air alone", radio_alone},
     {"begins_late", "up to half of the packets are over when it begins", begins_late},
