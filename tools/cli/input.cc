@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstring>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
@@ -534,7 +535,10 @@ void open_sources(InputOptions& options) {
   for (const std::string& name : names_of(options)) {
     try {
       const auto address = lines::parse_address(name);
-      if (!address && name != "-") require_file(name);
+      if (!address && name != "-") {
+        require_file(name);
+        if (std::filesystem::is_directory(name)) unreadable(name + ": Is a directory");
+      }
       if (!address || options.reconnect) continue;
       OpenLine& open = options.open_lines[name];
       if (address->kind == lines::Address::Kind::kAir) {

@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <cstring>
 #include <exception>
-#include <filesystem>
 #include <utility>
 
 #include "codec/text/text.h"
@@ -36,9 +35,7 @@ void unreadable(const std::string& what) {
 }
 
 void require_file(const std::string& path) {
-  int error = ::access(path.c_str(), R_OK) == 0 ? 0 : errno;
-  if (error == 0 && std::filesystem::is_directory(path)) error = EISDIR;
-  if (error != 0) unreadable(path + ": " + std::strerror(error));
+  if (::access(path.c_str(), R_OK) != 0) unreadable(path + ": " + std::strerror(errno));
 }
 
 std::string text_of_file(const std::string& path) {
