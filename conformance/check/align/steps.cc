@@ -21,14 +21,15 @@ constexpr std::int64_t kJitterUs = 10'000;          // Frames that a recorder's 
 constexpr std::int64_t kAcrossUs = 50'000;          // The same between two taps of it.
 constexpr std::int64_t kGoesOnUs = 1'000;           // How soon the first frame after a step comes.
 constexpr std::int64_t kLateAckUs = kLinkRepeatUs;  // Else of a copy that escaped.
-constexpr std::size_t kInterruptedMax = 4;          // More often it is the nodes that are slow.
+constexpr std::size_t kInterruptedMax = 4;          // More often it is the nodes that are slow;
+constexpr std::size_t kFramesEach = 10;             // in a short file more often than this.
 constexpr std::int64_t kSlowestUs = 1'000'000;      // Nobody waits for nodes that are slower.
 constexpr std::int64_t kHiddenUs = 1'000'000;       // A step forth that nothing shows is no longer.
 constexpr std::int64_t kLongUs = 5'000'000;         // No node takes so long.
 constexpr std::int64_t kAckRepeatUs = 810'000;      // After its reply an ack_join comes no later.
 constexpr std::int64_t kSilenceUs = 20'000'000;
-constexpr std::int64_t kSilences = 10;  // Times the longest of the others.
-constexpr std::size_t kManyFrames = 40;
+constexpr std::int64_t kSilences = 10;     // Times the longest of the others.
+constexpr std::size_t kManyFrames = 40;    // With fewer no silence is long by itself.
 constexpr std::int64_t kAloneTimes = 100;  // So much closer are the neighbours of a wrong stamp.
 constexpr std::size_t kTurnedMax = 8;
 constexpr std::size_t kBlockFrames = 3;  // At least, where a file has its taps in blocks.
@@ -100,12 +101,15 @@ void exchanges(const Observation& seen, std::vector<Exchange>& ends,
     begins.emplace_back(Hop::kReply, frame.src, request.seq_num);
   } else if (radio && frame.type == am::kJoinReply && parse_reply(frame.payload, reply)) {
     ends.emplace_back(Hop::kReply, frame.dest, reply.seq_num);
-    begins.emplace_back(Hop::kAckJoin, frame.dest, reply.seq_num);
-    begins.emplace_back(Hop::kRepeat, frame.dest, reply.seq_num);
+    // Another sink's reply to the same request does not begin the mote's time anew.
+    const std::uint64_t offered = addresses_of({reply.island, frame.dest}, {});
+    begins.emplace_back(Hop::kAckJoin, offered, reply.seq_num);
+    begins.emplace_back(Hop::kRepeat, offered, reply.seq_num);
   } else if (radio && frame.type == am::kAckJoin && parse_ack_join(frame.payload, ack)) {
-    ends.emplace_back(Hop::kAckJoin, frame.src, ack.seq_num);
+    const std::uint64_t accepted = addresses_of({ack.src.pid, frame.src}, {});
+    ends.emplace_back(Hop::kAckJoin, accepted, ack.seq_num);
     begins.emplace_back(Hop::kReport, ack.src.devid, ack.src.pid);
-    ends.emplace_back(Hop::kRepeat, frame.src, ack.seq_num);
+    ends.emplace_back(Hop::kRepeat, accepted, ack.seq_num);
     begins.push_back(ends.back());
   }
 }
@@ -122,6 +126,7 @@ class Recorded {
     std::size_t turned = 0;
     for (std::size_t i = 1; i < stamps_.size(); ++i) turned += stamps_[i] < stamps_[i - 1] ? 1 : 0;
     in_order_ = turned <= kTurnedMax;
+    interrupted_max_ = std::clamp<std::size_t>(frames_.size() / kFramesEach, 1, kInterruptedMax);
   }
 
   void mend() {
@@ -185,7 +190,6 @@ class Recorded {
 
   // Marks steps forth. Where there are some, shorter ones may hide in silences.
   void look_forth() {
-    if (stamps_.size() < kManyFrames) return;
     const auto steps = [&] { return std::ranges::count(suspect_, What::kStep); };
     const auto back = steps();
     mark_forth();
@@ -209,7 +213,8 @@ class Recorded {
         second = std::max(second, gap);
       }
     }
-    if (longest > kSilenceUs && longest > kSilences * second) suspect_[at] = What::kStep;
+    const bool many = stamps_.size() >= kManyFrames;
+    if (many && longest > kSilenceUs && longest > kSilences * second) suspect_[at] = What::kStep;
   }
 
   // Marks silences without which effects came in time after their causes. Where there are more
@@ -218,7 +223,7 @@ class Recorded {
     const std::int64_t slowest_us = std::max(kSlowestUs, response_us_);
     for (std::int64_t usual_us = response_us_; usual_us <= slowest_us; usual_us += usual_us / 8) {
       const std::set<std::size_t> silences = silences_beyond(usual_us);
-      if (silences.size() > kInterruptedMax) continue;
+      if (silences.size() > interrupted_max_) continue;
       for (const std::size_t at : silences) suspect_[at] = What::kStep;
       return;
     }
@@ -295,7 +300,7 @@ class Recorded {
     std::vector<std::size_t> out;
     for (const auto& [gap_us, at] : gaps) {
       if (all_us <= limit_us) return out;
-      if (out.size() == kInterruptedMax) break;
+      if (out.size() == interrupted_max_) break;
       if (!out.empty() && !several && gap_us < kLongUs) break;
       all_us -= gap_us;
       out.push_back(at);
@@ -306,16 +311,18 @@ class Recorded {
   // Returns whether few silences of the file are as long as that before frame `at`.
   bool stands_out(std::size_t at) const {
     std::size_t as_long = 0;
-    for (std::size_t i = 1; i < stamps_.size() && as_long <= kInterruptedMax; ++i) {
+    for (std::size_t i = 1; i < stamps_.size() && as_long <= interrupted_max_; ++i) {
       as_long += stamps_[i] - stamps_[i - 1] >= stamps_[at] - stamps_[at - 1] ? 1 : 0;
     }
-    return as_long <= kInterruptedMax;
+    return as_long <= interrupted_max_;
   }
 
-  // Returns whether frame `i` acknowledges the one directly before it.
+  // Returns whether frame `i` acknowledges the one directly before it in its tap.
   bool late_ack(std::size_t i) const {
     const Observation& ack = run_.seen[frames_[i]];
-    const Observation& sent = run_.seen[frames_[i - 1]];
+    std::size_t before = i - 1;
+    while (before > 0 && tap(before) != tap(i)) --before;
+    const Observation& sent = run_.seen[frames_[before]];
     return ack.kind == Observation::Kind::kLinkAck && sent.kind == Observation::Kind::kRadio &&
            sent.ack_request && sent.has_dsn && sent.dsn == ack.dsn && sent.tap == ack.tap;
   }
@@ -386,7 +393,8 @@ class Recorded {
   std::int64_t response_us_;
   std::vector<std::int64_t> stamps_;
   std::vector<What> suspect_;
-  bool in_order_ = true;  // The file has its taps' frames in the order of time.
+  std::size_t interrupted_max_ = 0;  // So many silences at most show steps by what they interrupt.
+  bool in_order_ = true;             // The file has its taps' frames in the order of time.
   bool stepped_ = false;
 };
 

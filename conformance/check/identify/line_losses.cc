@@ -20,6 +20,7 @@ constexpr std::int64_t kHostWaitsUs = 950'000;
 // Few holes may be a few less than there are as a rule, and a line may lose as much more.
 constexpr std::size_t kHolesMore = 3;
 constexpr std::size_t kLossMore = 3;
+constexpr std::size_t kCopiesMore = 2;  // The link may make more copies than were captured.
 
 // What a capture misses of the air.
 struct MissedOfAir {
@@ -37,6 +38,19 @@ MissedOfAir missed_of_air(const Identity& who, const Options& options) {
   if (options.sniffer_complete) out.holes = 0;
   out.many = !options.sniffer_complete && kHoleShare * out.holes >= out.frames;
   return out;
+}
+
+// Returns how many copies of requests and replies may be missing: as many as those that are there
+// and the share of frames that are not make likely, and none where all are there.
+std::size_t missed_copies(const Run& run, const Identity& who, const MissedOfAir& air) {
+  if (air.holes == 0 || air.frames == 0) return 0;
+  std::size_t copies = kCopiesMore;
+  for (std::size_t i = run.past.senders.size(); i < run.seen.size(); ++i) {
+    const std::uint8_t type = run.seen[i].frame.type;
+    const bool copy = run.seen[i].kind == Observation::Kind::kRadio && who.marks[i].repeat;
+    copies += copy && (type == am::kJoin || type == am::kJoinReply) ? 1 : 0;
+  }
+  return 1 + kLossMore * copies * (air.holes + kHolesMore) / air.frames;
 }
 
 }  // namespace
@@ -95,7 +109,7 @@ Losses find_losses(const Run& run, const Identity& who, const Options& options) 
   for (std::size_t tap = 0; tap < run.past.lossy_taps.size(); ++tap) {
     if (run.past.lossy_taps[tap]) out[tap].any = true;
   }
-  return {std::move(out), air.many};
+  return {std::move(out), air.many, missed_copies(run, who, air)};
 }
 
 bool misses_passed(const Run& run, const Identity& who, std::uint16_t sink) {

@@ -1,5 +1,5 @@
 // What captures miss of serial lines, by the numbers of hosts' packets and by what they miss of the
-// air.
+// air, and of the link's copies.
 #pragma once
 
 #include <cstddef>
@@ -20,6 +20,7 @@ struct LineLoss {
 struct Losses {
   std::vector<LineLoss> lines;  ///< By tap.
   bool many_of_air = false;     ///< Many frames of the air.
+  std::size_t copies = 0;       ///< So many of the link's copies in joins; no DSN shows them.
 };
 
 Losses find_losses(const Run& run, const Identity& who, const Options& options);

@@ -94,6 +94,7 @@ void Context::look_up() {
   Losses losses = find_losses(run, who, options);
   line_losses = std::move(losses.lines);
   lossy_air = who.hears_radio && losses.many_of_air;
+  copies_missed = losses.copies;
   untimed_taps = run.unordered_taps;
   untimed_taps.resize(run.taps.size());
   unordered = std::find(untimed_taps.begin(), untimed_taps.end(), true) != untimed_taps.end();

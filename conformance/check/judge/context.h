@@ -83,6 +83,7 @@ struct Context {
 
   std::vector<LineLoss> line_losses;  ///< By tap: what the capture misses of a serial line.
   bool lossy_air = false;             ///< It misses many of the air; a link's repeat shows no gap.
+  std::size_t copies_missed = 0;      ///< It may miss so many of the link's copies in joins.
   std::vector<std::int64_t> last_us;  ///< By device: when something of it was seen last.
 
   /// Fills in all of these. Called before anything else.

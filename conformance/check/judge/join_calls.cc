@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "conformance/check/links.h"
+
 namespace rubric::check {
 
 using machine::JoinMote;
@@ -444,6 +446,33 @@ void JoinCalls::finish() {
 
 std::uint8_t MoteJoins::expiries_min(std::uint16_t mote) const {
   return std::min<std::uint8_t>(4, context_.profile(mote).join_requests_max);
+}
+
+// Returns the known sink of that island; kNobody if there is none.
+std::uint16_t MoteJoins::sink_of(std::uint16_t island) const {
+  const auto sink =
+      std::find_if(context_.sinks.begin(), context_.sinks.end(),
+                   [&](std::uint16_t device) { return context_.device(device).island == island; });
+  return sink == context_.sinks.end() ? kNobody : *sink;
+}
+
+// Returns whether the offer that the mote accepts was captured out of order: before the request,
+// of which only the link's copy was captured, or as such a copy after the ack_join. What escaped
+// before a copy leaves no gap in the DSNs.
+bool MoteJoins::may_take_copy(std::uint16_t mote, const MoteHypothesis& h, const AckJoin& ack,
+                              std::int64_t now_us) {
+  const auto is_offer = [&](const Observation& seen) {
+    Reply reply;
+    return seen.kind == Observation::Kind::kRadio && seen.frame.type == am::kJoinReply &&
+           seen.frame.dest == context_.device(mote).am && parse_reply(seen.frame.payload, reply) &&
+           reply.island == ack.src.pid && reply.seq_num == ack.seq_num;
+  };
+  const std::int64_t before_us = h.last_request_us - kLinkRepeatUs;
+  if (context_.next(before_us, kLinkRepeatUs, is_offer) != nullptr) return true;
+  if (context_.copies_missed == 0) return false;
+  if (context_.next(now_us, kLinkRepeatUs, is_offer) == nullptr) return false;
+  --context_.copies_missed;
+  return true;
 }
 
 std::int64_t MoteJoins::began_us(std::uint16_t mote, const MoteHypothesis& h) const {

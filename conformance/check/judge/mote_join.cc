@@ -266,14 +266,6 @@ void MoteJoins::keep(MoteWatch& watch, std::vector<MoteHypothesis>& next, std::u
   watch.set.assign(1, unknown);
 }
 
-// Returns the known sink of that island; kNobody if there is none.
-std::uint16_t MoteJoins::sink_of(std::uint16_t island) const {
-  const auto sink =
-      std::find_if(context_.sinks.begin(), context_.sinks.end(),
-                   [&](std::uint16_t device) { return context_.device(device).island == island; });
-  return sink == context_.sinks.end() ? kNobody : *sink;
-}
-
 // Returns the rule that forbids this ack_join to the hypothesis; kNone if it is allowed.
 ReqId MoteJoins::why_not_ack(std::uint16_t mote, const MoteHypothesis& h, const Observation& seen,
                              const AckJoin& ack) const {
@@ -372,6 +364,11 @@ void MoteJoins::refuse_ack(std::uint16_t mote, const Observation& seen, const Ac
     // Another sink's offer, or a request with another number, may have escaped.
     if (rule == "J7-CHOICE"_rule && h.acks_seen == 0) {
       severity = context_.without(sink_of(ack.dest.pid), h.first_request_us, now);
+      Place asked;
+      asked.time_us = h.last_request_us;
+      if (severity == Severity::kFail && may_take_copy(mote, h, ack, now)) {
+        severity = context_.without_copy(mote, asked, now);
+      }
     } else if (ack.seq_num != h.join.seq_num) {
       const bool asked_so = std::any_of(watch.set.begin(), watch.set.end(), [&](const auto& other) {
         return other.join.phase == Phase::kJoining && other.join.seq_num == ack.seq_num;

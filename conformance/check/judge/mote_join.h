@@ -151,6 +151,8 @@ class MoteJoins {
                       bool as_member);
   bool asked_as_member(std::uint16_t mote, const Place& at, machine::Address src, bool only);
   std::uint16_t sink_of(std::uint16_t island) const;
+  bool may_take_copy(std::uint16_t mote, const MoteHypothesis& h, const AckJoin& ack,
+                     std::int64_t now_us);
   ReqId why_not_ack(std::uint16_t mote, const MoteHypothesis& h, const Observation& seen,
                     const AckJoin& ack) const;
   void refuse_ack(std::uint16_t mote, const Observation& seen, const AckJoin& ack);

@@ -176,20 +176,6 @@ void SinkJoins::may_have_replied(const Observation& seen, const Reply& reply) {
   }
 }
 
-void SinkJoins::forgot(std::uint16_t sink, std::uint16_t mote_am) {
-  SinkWatch* const watch = find(sink);
-  if (watch == nullptr) return;
-  PairWatch& mote = pair(*watch, mote_am);
-  watch->set_due(mote, false);
-  next_.clear();
-  for (SinkHypothesis h : mote.set) {
-    h.unknown = h.owes_report = h.owes_notice = false;
-    h.member.reset();
-    next_.push_back(h);
-  }
-  keep(*watch, mote, next_, mote.ack);
-}
-
 void SinkJoins::doubt(std::uint16_t sink, PairWatch& watch, const Place& now) const {
   const std::uint32_t gone_after = context_.profile(sink).gone_after_ticks;
   if (gone_after == 0 || context_.device(sink).application) return;
@@ -469,6 +455,9 @@ void SinkJoins::refuse_reply(SinkWatch& sink, PairWatch& watch, const Observatio
                                   number(reply.seq_num) + ", mote " + number(am) + ")."
                             : "join_reply to mote " + number(am) + ", which has not asked.";
     said.expected = "At most one join_reply for each join_request.";
+  }
+  if (rule == "J3-ONCE"_rule && answers_copy(sink.device, watch, seen, reply)) {
+    severity = std::min(severity, Severity::kInconclusive);
   }
   context_.report(rule, severity, seen.place, sink.device, std::move(said));
   SinkHypothesis next = h;

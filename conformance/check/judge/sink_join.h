@@ -215,6 +215,8 @@ class SinkJoins {
   static bool owes(SinkWatch& sink, std::uint16_t mote_am, std::uint16_t seq_num);
   void judge_clock(SinkWatch& sink, const Observation& seen, const Reply& reply);
   void refuse_reply(SinkWatch& sink, PairWatch& watch, const Observation& seen, const Reply& reply);
+  bool answers_copy(std::uint16_t sink, const PairWatch& watch, const Observation& seen,
+                    const Reply& reply);
 
   struct Unanswered {
     Place request;
@@ -231,6 +233,7 @@ class SinkJoins {
   std::vector<SinkWatch> sinks_;
   std::unordered_map<std::uint16_t, Unanswered> unanswered_;
   std::vector<SinkHypothesis> next_;
+  Place copied_;  ///< The last request of which a copy was taken to be missing.
 };
 
 }  // namespace rubric::check

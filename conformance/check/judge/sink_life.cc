@@ -1,11 +1,50 @@
 // What shows that a sink began anew: its clock, as its join_replies tell it (decision 119), and the
-// island that it acts for (decision 123).
+// island that it acts for (decision 123); and what it forgets, or may answer unseen.
 #include <algorithm>
 #include <utility>
 
 #include "conformance/check/judge/sink_join.h"
+#include "conformance/check/links.h"
 
 namespace rubric::check {
+
+void SinkJoins::forgot(std::uint16_t sink, std::uint16_t mote_am) {
+  SinkWatch* const watch = find(sink);
+  if (watch == nullptr) return;
+  PairWatch& mote = pair(*watch, mote_am);
+  watch->set_due(mote, false);
+  next_.clear();
+  for (SinkHypothesis h : mote.set) {
+    h.unknown = h.owes_report = h.owes_notice = false;
+    h.member.reset();
+    next_.push_back(h);
+  }
+  keep(*watch, mote, next_, mote.ack);
+}
+
+// Returns whether the reply may answer the link's copy of a request where only one of the two was
+// captured, which leaves no gap in the DSNs. A copy counts once for all sinks that heard it.
+bool SinkJoins::answers_copy(std::uint16_t sink, const PairWatch& watch, const Observation& seen,
+                             const Reply& reply) {
+  const std::int64_t now = seen.place.time_us;
+  if (context_.device(sink).hearing || !seen.place.timed()) return false;
+  const auto is_request = [&](const Observation& one) {
+    Request request;
+    return one.kind == Observation::Kind::kRadio && one.frame.src == seen.frame.dest &&
+           one.frame.type == am::kJoin && parse_request(one.frame.payload, request) &&
+           request.seq_num == reply.seq_num;
+  };
+  const Observation* const later = context_.next(now, kLinkRepeatUs, is_request);
+  const bool before = watch.asked && watch.request_seq == reply.seq_num &&
+                      now <= context_.due_us(sink, watch.request.time_us) + kLinkRepeatUs;
+  if (!before && later == nullptr) return false;
+  const Place& request = before ? watch.request : later->place;
+  const bool counted = copied_.file == request.file && copied_.frame == request.frame;
+  if (!counted && context_.copies_missed == 0) return false;
+  if (!counted) --context_.copies_missed;
+  copied_ = request;
+  return true;
+}
 
 void SinkJoins::judge_clock(SinkWatch& sink, const Observation& seen, const Reply& reply) {
   constexpr std::int64_t kOffMs = 1000;  // No parameter says it (decision 119).

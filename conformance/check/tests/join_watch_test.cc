@@ -257,5 +257,64 @@ TEST(SinkIslands, AReplyThatMayBeTheOnlySinksOwnIsDoubted) {
   EXPECT_EQ(rules_of(given.findings).find("J3-ADDRESS"), std::string::npos);
 }
 
+std::string fails(const Script& script, const Options& options = {}) {
+  return rules_of(judge(script.run, options).findings, Severity::kFail);
+}
+
+// Mote 2 joins and sends messages; `misses`: one more than the capture has.
+Script busy(bool misses) {
+  Script script = Script().join(0, 11, 2, 100).join(60, 12, 3, 200, 2);
+  for (std::uint16_t i = 1; i <= 12; ++i) {
+    if (i == 6 && misses) ++script.dsn[2];
+    script.net(100 + 40 * i, 2, 1, update(2, i)).up(110 + 40 * i, update(2, i).forwarded());
+  }
+  return script;
+}
+
+// The link repeats a request, and the capture misses one of the two, which no DSN shows.
+TEST(JoinCopies, AReplyMayAnswerTheOneThatIsMissing) {
+  const auto with = [](int doubled, bool misses) {
+    Script script = busy(misses);
+    for (std::uint16_t mote = 4; mote <= 6; ++mote) {
+      const std::uint16_t ms = 600 * mote;
+      script.request(ms, mote, 300).reply(ms + 10, 11, mote, 300, ms + 10);
+      if (mote < 4 + doubled) script.reply(ms + 18, 11, mote, 300, ms + 18);
+      script.ack_join(ms + 30, 11, mote, 300).link_ack().joined(ms + 50, 11, mote);
+    }
+    return script;
+  };
+  EXPECT_EQ(fails(with(1, true)), "");
+  EXPECT_EQ(fails(with(1, false)), "J3-ONCE") << "Nothing else is missing.";
+  EXPECT_EQ(fails(with(1, true), {.sniffer_complete = true}), "J3-ONCE");
+  EXPECT_EQ(fails(with(3, true)), "J3-ONCE") << "So many are not missing.";
+  for (const bool misses : {true, false}) {  // The first copy of a later request.
+    Script later = busy(misses);
+    later.request(1000, 4, 300).reply(1010, 11, 4, 300, 1010).reply(1495, 11, 4, 300, 1495);
+    later.request(1500, 4, 300).reply(1510, 11, 4, 300, 1510);
+    later.ack_join(1520, 11, 4, 300).link_ack().joined(1540, 11, 4);
+    EXPECT_EQ(fails(later), misses ? "" : "J3-ONCE");
+  }
+}
+
+// A mote takes an offer that was captured too early, as its request or the offer was repeated.
+TEST(JoinCopies, AnOfferMayComeBeforeTheRequestOrAfterItsAck) {
+  const auto with = [](double offered_ms, bool misses, const Options& options = {}) {
+    Script script = busy(misses);
+    if (offered_ms < 1000) script.reply(offered_ms, 12, 4, 300, 900);
+    script.request(1000, 4, 300).reply(1010, 11, 4, 300, 1010).ack_join(1020, 12, 4, 300);
+    script.link_ack().joined(1025, 12, 4, 2);
+    if (offered_ms > 1000) script.reply(offered_ms, 12, 4, 300, 900);
+    script.net(1500, 1, 9, message({11, 1}, {11, 9}, 5), 11);  // Nothing of the sinks is missing.
+    script.net(1500, 1, 9, message({12, 1}, {12, 9}, 5), 12);
+    return fails(script, options);
+  };
+  EXPECT_EQ(with(995, false), "");
+  EXPECT_EQ(with(850, false), "J7-CHOICE");
+  EXPECT_NE(with(995, false, {.sniffer_complete = true}).find("J7-CHOICE"), std::string::npos);
+  EXPECT_EQ(with(1030, true), "");
+  EXPECT_EQ(with(1030, false), "J7-CHOICE") << "Nothing else is missing.";
+  EXPECT_EQ(with(1200, true), "J7-CHOICE");
+}
+
 }  // namespace
 }  // namespace rubric::check::join_watch_test

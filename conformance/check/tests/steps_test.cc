@@ -7,6 +7,7 @@
 
 #include <set>
 #include <string>
+#include <utility>
 
 #include "conformance/check/observation.h"
 #include "conformance/check/tests/failures.h"
@@ -96,16 +97,40 @@ TEST(Steps, TurnedFramesOfOneTapKeepTheOrderOfTheFile) {
 }
 
 TEST(Steps, ALinkAckThatComesMuchLaterShowsOneForth) {
-  Script script = busy();
-  Script later = script;
-  for (std::size_t i = 0; i < later.run.seen.size(); ++i) {
-    if (later.run.seen[i].kind != Observation::Kind::kLinkAck) continue;
-    const double ms = static_cast<double>(later.run.seen[i].place.time_us) / 1000;
-    const check::Run run = stepped_at(later, ms, 400);
-    ASSERT_EQ(run.steps.size(), 1U);
-    EXPECT_THAT(run.facts[0], HasSubstr("forth"));
-    EXPECT_TRUE(failures_of(judge(run, complete())).empty());
+  Script between = Script().request(0, 2, 100).reply(10, 11, 2, 100, 10).ack_join(20, 11, 2, 100);
+  between.link_ack().joined(21, 11, 2);  // On a line.
+  std::swap(between.run.seen.back(), between.run.seen.rbegin()[1]);
+  for (const Script& script : {busy(), Script().join(0, 11, 2, 100), between}) {
+    for (const Observation& seen : script.run.seen) {
+      if (seen.kind != Observation::Kind::kLinkAck) continue;
+      const check::Run run =
+          stepped_at(script, static_cast<double>(seen.place.time_us) / 1000, 400);
+      ASSERT_EQ(run.steps.size(), 1U);
+      EXPECT_THAT(run.facts[0], HasSubstr("forth"));
+      EXPECT_TRUE(failures_of(judge(run, complete())).empty());
+    }
   }
+}
+
+TEST(Steps, ARepeatedAckJoinShowsOneForthAmongAFewFrames) {
+  for (const bool two : {false, true}) {
+    Script script = Script().request(0, 2, 100).reply(10, 11, 2, 100, 10).ack_join(20, 11, 2, 100);
+    if (two) script.reply(30, 12, 2, 100, 30);  // The mote has chosen.
+    script.ack_join(40, 11, 2, 100).link_ack().joined(60, 11, 2);
+    send(script, 1, 4);
+    const check::Run run = stepped_at(script, 30, 10'000);
+    EXPECT_EQ(run.steps.size(), 1U) << two;
+    EXPECT_TRUE(failures_of(judge(run, complete())).empty()) << two;
+  }
+}
+
+// Of two taps in files of their own, whose steps nothing else shows.
+TEST(Steps, AnAckShowsOneForthAmongAFewFrames) {
+  const NetFields down = message({11, machine::kNullDevid}, {11, 2}, 7, 1);
+  Script script = Script().request(0, 2, 100).reply(10, 11, 2, 100, 10).ack_join(20, 11, 2, 100);
+  script.net(2000, 1, 2, down, 11).net(2010, 2, 1, down.ack(8));
+  EXPECT_EQ(stepped_at(script, 2010, 6'000).steps.size(), 1U);
+  EXPECT_TRUE(stepped_at(script, 0, 0).steps.empty());
 }
 
 // Two replies of a sink, between which a link ack comes so much later than it should.
@@ -161,13 +186,15 @@ TEST(Steps, ASlowNodeThatStatesItShowsNone) {
 
 // A lawful mote repeats its ack_join for less than a second, and need not repeat it at all.
 TEST(Steps, ALateAckJoinBetweenOrdinarySilencesShowsNone) {
-  Script script = Script().join(0, 11, 2, 100).join(100, 11, 3, 200);
-  send(script, 1, 3);
-  script.ack_join(1590, 11, 3, 200);
-  send(script, 4, 19);
-  const check::Run run = stepped_at(script, 0, 0);
-  EXPECT_TRUE(run.steps.empty());
-  ASSERT_EQ(failures_of(judge(run, complete())).size(), 1U);
+  for (const int last : {19, 5}) {
+    Script script = Script().join(0, 11, 2, 100).join(100, 11, 3, 200);
+    send(script, 1, 3);
+    script.ack_join(1590, 11, 3, 200);
+    send(script, 4, last);
+    const check::Run run = stepped_at(script, 0, 0);
+    EXPECT_TRUE(run.steps.empty()) << last;
+    EXPECT_EQ(broken_in(judge(run, complete())), "J4-REPEAT") << last;
+  }
 }
 
 // A request that comes too early: blamed before the step and after it, but not across it.
