@@ -15,7 +15,7 @@ EVENTS = ROOT / "conformance/check/tests/testdata"
 
 # What the captures and the sources of release 1.0 show to be broken; weak ones among them.
 BROKEN = {
-    "firmware": "J2-LISTED J3-TIME J4-SEQ J6-ADD J8-FAIL J8-LIMIT J9-INTERLEAVE N11-NBYTES "
+    "firmware": "J2-LISTED J3-TIME J4-SEQ J6-ADD J8-FAIL J8-LIMIT J9-INTERLEAVE N1-SIZE N11-NBYTES "
                 "N2-IN-FULL N2-IN-ORDER N6-OTHER N7-FOREIGN S1-MODE S2-SIGNAL S3-OLD S3-UNCHANGED "
                 "S6-DISPOSED T3-MATCH T3-SENDER T3-SUCCESS T3-TIMEOUT",
     "base_station": "N11-NBYTES N11-SHORT N8-INCOMING N8-PEIS T2-BROADCAST T3-TIMEOUT",
