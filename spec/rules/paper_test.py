@@ -13,6 +13,30 @@ import yaml
 
 SPEC = pathlib.Path(sys.argv.pop(1)) / "spec"
 
+# The clauses of the three chapters, and how many paragraphs each has in the paper, counted there.
+PARAGRAPHS = {
+    "Overview of the Communication Layer": 1,
+    "A Reference Architecture for Cognitive Robotic Ecologies": 7,
+    "Communication Requirements": 8,
+    "The Structure of the Communication Layer": 3,
+    "The Network level": 5,
+    "The Topology and the Routing of the Ecology": 3,
+    "The Intra-Island Connectivity": 1,
+    "The Inter-Island Connectivity": 3,
+    "The RUBICON Addressing Scheme": 5,
+    "Island Collision Resolution and Safe Join": 6,
+    "The Transport level": 11,
+    "Connectionless Message Passing": 3,
+    "Synaptic Communication": 16,
+    "Message Dispatcher": 9,
+    "Rubicon ACK": 5,
+    "Component Management": 7,
+    "Memory Occupation": 6,
+    "Test-Bed Case Studies": 2,
+    "In-Hospital Transport Test-Bed": 11,
+    "AAL Test-bed": 16,
+}
+
 
 def load(path):
     return yaml.safe_load((SPEC / path).read_text(encoding="utf-8"))
@@ -33,12 +57,11 @@ class Paper(unittest.TestCase):
             for one in paragraphs:
                 yield f"{clause}, {number_of(one)}", one
 
-    def test_clauses_and_ordinals_are_without_gaps(self):
-        names = [one["clause"] for one in load("rules/paper.yaml")]
-        self.assertEqual(len(names), len(set(names)))
+    def test_clauses_and_paragraphs_are_those_of_the_paper(self):
+        self.assertEqual([one["clause"] for one in load("rules/paper.yaml")], list(PARAGRAPHS))
         for clause, paragraphs in self.clauses.items():
             self.assertEqual([number_of(one) for one in paragraphs],
-                             list(range(1, len(paragraphs) + 1)), clause)
+                             list(range(1, PARAGRAPHS[clause] + 1)), clause)
 
     def test_every_paragraph_is_covered_or_not_judged(self):
         for place, one in self.paragraphs():

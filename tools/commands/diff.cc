@@ -27,9 +27,10 @@ struct DiffOptions {
 };
 
 constexpr const char* kDiffFooter =
-    "Two implementations differ where one keeps a line of a golden trace that the other breaks;\n"
-    "freedom within the rules is no difference. The eight smallest traces that tell them apart\n"
-    "are made as small as they can be, and the shortest is printed.\n"
+    "Two implementations differ where one keeps a line of a golden trace that the other breaks,\n"
+    "or dies where the other does not; freedom within the rules is no difference. Cases in which\n"
+    "both die are named, not compared. The eight smallest traces that tell them apart are made\n"
+    "as small as they can be, and the shortest is printed.\n"
     "Examples:\n"
     "  rubric diff --target ./old_mote --target ./new_mote\n"
     "  rubric diff --target machine --target machine --profile paper --profile deployed\n"
@@ -59,8 +60,13 @@ void compare(DiffOptions options) {
   for (const trace::File& file : files) pointers.push_back(&file);
   const shrink::DifferenceSearch found =
       shrink::find_difference(pointers, players[0]->player(), players[1]->player());
+  if (!found.both_died.empty()) {
+    text::print(stderr, "{} not compared, since both died, hung or wrote nonsense\n",
+                found.both_died.size());
+    for (const std::string& name : found.both_died) text::print(stderr, "  {}\n", name);
+  }
   if (found.compared == 0) {
-    text::print(stderr, "no case could be run on both\n");
+    text::print(stderr, "no case could be compared\n");
     cli::exit_with(cli::kExitIncomplete);
   }
   text::print(stderr, "{} cases compared, {} differ, {} that one of them cannot play\n",

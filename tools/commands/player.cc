@@ -64,7 +64,7 @@ AttachedPlayer::AttachedPlayer(const std::string& target, const PlayerOptions& o
   how.stated = statement_of(options.stated);
   how.step_timeout = std::chrono::milliseconds(static_cast<int>(options.timeout_seconds * 1000));
   attachment_ = targets::attach(target, how);
-  suite::require_honest(*attachment_, target);
+  suite::require_honest(*attachment_, target, options.seed);
 }
 
 shrink::Player AttachedPlayer::player() {

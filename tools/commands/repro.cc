@@ -48,9 +48,8 @@ struct Repro {
 
 flaws::StepFunction step_of(const std::string& target) {
   if (target == "machine") return machine::step;
-  constexpr std::string_view kFlaw = "machine:";
-  if (target.starts_with(kFlaw)) {
-    if (const flaws::Flaw* flaw = flaws::find(target.substr(kFlaw.size()))) return flaw->step;
+  for (const flaws::Flaw& one : flaws::all()) {
+    if (target == std::string("machine:") + one.name) return one.step;
   }
   throw cli::UsageError("--target " + target +
                         ": expected machine or machine:FLAW, as rubric explore lists them");

@@ -29,7 +29,9 @@ ReqId rule_of(const KnownFailure& one) { return reflect::find_requirement(one.re
 
 // All but the message agrees.
 bool is_about(const KnownFailure& one, const check::Run& run, const Finding& finding) {
-  if (finding.severity != Severity::kFail || finding.requirement != rule_of(one)) return false;
+  const Severity severity = finding.severity;
+  if (severity != Severity::kFail && severity != Severity::kInconclusive) return false;
+  if (finding.requirement != rule_of(one)) return false;
   if (!one.node.empty() && finding.node != one.node) return false;
   return one.file.empty() || (finding.place.file < run.files.size() &&
                               glob_matches(one.file, run.files[finding.place.file]));
@@ -65,22 +67,29 @@ Outcome compare(const check::Run& run, const check::Options& options, const chec
     ExpectationResult result;
     if (applies(one, run, options.deployed)) {
       std::vector<std::size_t> others;
+      bool open = false;  // It is seen, but not proven.
       for (std::size_t i = 0; i < report.findings.size(); ++i) {
         const Finding& finding = report.findings[i];
         if (!is_about(one, run, finding)) continue;
         const bool same = has_tokens(finding.text, one.message);
+        if (finding.severity == Severity::kInconclusive) {
+          open = open || same;
+          continue;
+        }
         (same ? result.findings : others).push_back(i);
         if (same && out.expected_by[i] == kUnexpected) out.expected_by[i] = e;
       }
       if (!result.findings.empty()) {
         result.state = ExpectationState::kMatched;
       } else if (others.empty()) {
-        result.state = ExpectationState::kStale;
+        result.state = open ? ExpectationState::kNotApplicable : ExpectationState::kStale;
       } else {
         result.state = ExpectationState::kOtherMessage;
       }
       if (result.findings.empty()) result.findings = std::move(others);
-      if (result.state != ExpectationState::kMatched) ++out.broken_expectations;
+      const bool untrue = result.state == ExpectationState::kStale ||
+                          result.state == ExpectationState::kOtherMessage;
+      out.broken_expectations += untrue ? 1 : 0;
     }
     out.results.push_back(std::move(result));
   }

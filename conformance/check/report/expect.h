@@ -16,7 +16,7 @@ enum class ExpectationState : std::uint8_t {
   kMatched,        ///< A failure is just so.
   kStale,          ///< Nothing failed that way any more.
   kOtherMessage,   ///< It fails, but says something else.
-  kNotApplicable,  ///< It is about another file or profile.
+  kNotApplicable,  ///< It is about another file or profile, or inconclusive here.
 };
 /// Returns "matched", "stale", "other_message", "not_applicable".
 std::string_view state_name(ExpectationState state);

@@ -134,14 +134,30 @@ TEST(Expectations, OfAFailure) {
   }
 }
 
-TEST(Expectations, AreOfFailuresAlone) {
-  const check::Report report =
-      report_of({finding("J4-SEQ"_rule, Severity::kInconclusive, 4, "a wrong number")});
-  const Outcome outcome =
-      compare(run_of(9), {}, report,
-              expecting("- {requirement: J4-SEQ, message: a wrong number, reason: r}"));
-  EXPECT_EQ(outcome.results[0].state, ExpectationState::kStale);
-  EXPECT_EQ(outcome.exit_code(), 1);
+TEST(Expectations, AreNotAskedOfWhatIsInconclusive) {
+  struct Undecided {
+    const char* entry;
+    Severity severity;
+    ExpectationState state;
+  };
+  for (const Undecided& one : {
+           Undecided{"J4-SEQ, message: a wrong number", Severity::kInconclusive,
+                     ExpectationState::kNotApplicable},
+           Undecided{"J4-SEQ, message: a wrong number", Severity::kWeak, ExpectationState::kStale},
+           Undecided{"J4-SEQ, message: another number", Severity::kInconclusive,
+                     ExpectationState::kStale},
+           Undecided{"J4-CLOCK, message: a wrong number", Severity::kInconclusive,
+                     ExpectationState::kStale},
+       }) {
+    const check::Report report =
+        report_of({finding("J4-SEQ"_rule, one.severity, 4, "a wrong number")});
+    const Outcome outcome =
+        compare(run_of(9), {}, report,
+                expecting(std::string("- {requirement: ") + one.entry + ", reason: r}"));
+    EXPECT_EQ(state_name(outcome.results[0].state), state_name(one.state)) << one.entry;
+    EXPECT_EQ(outcome.broken_expectations, one.state == ExpectationState::kStale ? 1u : 0u);
+    EXPECT_EQ(outcome.expected_by[0], kUnexpected);
+  }
 }
 
 TEST(Expectations, OneKnownFailureLeavesOthersUnexpected) {

@@ -351,6 +351,10 @@ void route_by_devid(State& state, Ticks now, Forged& forged, Link link, Actions&
 void firmware(State& state, Ticks now, const Event& given, Actions& actions) {
   Event event = given;
   if (auto* const called = std::get_if<machine::Called>(&event)) {
+    const auto* const send = std::get_if<machine::Send>(&called->call);
+    if (send != nullptr && send->data.size() > machine::kAppDataMax) {
+      throw Died("died of more than 100 bytes");
+    }
     if (std::holds_alternative<machine::DisposeChannel>(called->call)) {
       actions.clear();
       return actions.notify(machine::OperationResult{true}, "S6-DISPOSED"_rule);

@@ -5,13 +5,20 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <stdexcept>
 #include <string_view>
 
 #include "conformance/machine/step.h"
 
 namespace rubric::flaws {
 
-/// Like machine::step; without a state of its own.
+/// Thrown by a step that kills the node.
+class Died : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Like machine::step, but may throw Died; without a state of its own.
 using StepFunction = void (*)(machine::State&, machine::Ticks, const machine::Event&,
                               machine::Actions&);
 

@@ -53,6 +53,19 @@ TEST(Flaws, LeaveAnUndisturbedJoinAlone) {
   }
 }
 
+TEST(Flaws, ALongSendKillsTheFirmware) {
+  const std::array<std::uint8_t, 101> bytes{};
+  const Flaw* const firmware = find("release_1_0_firmware");
+  for (const machine::Config& config : {mote(), sink()}) {
+    machine::State state = machine::start(config);
+    machine::Actions actions;
+    machine::Send send{{11, 2}, 5, false, Bytes(bytes.data(), 100)};
+    firmware->step(state, 0, machine::Called{send}, actions);
+    send.data = Bytes(bytes.data(), bytes.size());
+    EXPECT_THROW(firmware->step(state, 1, machine::Called{send}, actions), Died);
+  }
+}
+
 // cur_time is invisible where time does not run, so the explorer does not check it.
 TEST(Flaws, TimeOfBootTellsNoOtherTime) {
   machine::State state = machine::start(sink());

@@ -47,14 +47,17 @@ std::set<std::string> variables_of(const Line& line) {
 std::vector<std::string> rules_of_stimulus(const trace::Case& one, const Line* stimulus,
                                            std::string_view node) {
   std::vector<std::string> before;
+  std::vector<std::string> others;
   bool after = !stimulus;
   for (const Line* line : one.lines()) {
     after = after || line == stimulus;
-    if (line->node != node || line->requirements.empty()) continue;
+    if (line->requirements.empty()) continue;
+    if (others.empty()) others = line->requirements;
+    if (line->node != node) continue;
     if (after) return line->requirements;
     before = line->requirements;
   }
-  return before;
+  return before.empty() ? others : before;
 }
 
 bool uses(const trace::Case& one, trace::ParameterId parameter) {

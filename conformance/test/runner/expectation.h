@@ -19,7 +19,7 @@ bool is_weak(const trace::Line& line);
 /// seen.
 bool is_needed_later(const trace::Case& one, const trace::Line& line);
 /// Returns the rules of `stimulus`, or of the start if it is null: those of the first line after it
-/// that judges the node, else of the last one before it.
+/// that judges the node, else of the last one before it, else of the first that judges any node.
 std::vector<std::string> rules_of_stimulus(const trace::Case& one, const trace::Line* stimulus,
                                            std::string_view node);
 /// Returns whether a time of the case has this parameter.

@@ -76,11 +76,12 @@ class Run {
       }
       result.reason = error.what();
     } catch (const TargetBroken& error) {
-      if (begun_) {
+      if (begun_ || dynamic_cast<const BrokenAtReset*>(&error)) {
         judge_what_came(result);
         set_died(result, error.what());
       } else {
         set_error(result, place_, error.what());
+        result.failures.back().crash = true;
       }
     } catch (const trace::TraceError& error) {
       set_error(result, error.place(), error.what());
@@ -150,11 +151,13 @@ class Run {
   }
 
   void reset(NodeLog& node, const trace::NodeHeader& header) {
+    at_reset_ = &node;
     node.target().start(scope_, header);
     for (const Line* line : case_.lines()) {
       if (line->node == header.name && line->message.name == "linkack") ++node.link_acks_to_come;
     }
     node.target().hold_link_acks(node.link_acks_to_come > 0);
+    at_reset_ = nullptr;
   }
 
   NodeLog* node_of(const Line& line) {
@@ -502,13 +505,14 @@ class Run {
     result.reason = why;
   }
 
-  // Blames what was given last for the end of the target.
+  // Blames what was given last for the end of the target, or the start if that was nothing.
   void set_died(CaseResult& result, const char* why) {
     set_error(result, stimulus_ ? stimulus_->place : place_, why);
     result.verdict = CaseVerdict::kFail;
     Failure& failure = result.failures.back();
     failure.crash = true;
-    failure.node = stimulus_ ? stimulus_->node : nodes_.front().name();
+    const NodeLog& first = at_reset_ ? *at_reset_ : nodes_.front();
+    failure.node = stimulus_ ? stimulus_->node : first.name();
     failure.requirements = rules_of_stimulus(case_, stimulus_, failure.node);
     if (failure.requirements.empty()) return;
     failure.suspected.assign(failure.requirements.begin() + 1, failure.requirements.end());
@@ -555,6 +559,7 @@ class Run {
   trace::Place place_;              // Place of the current line.
   const Line* stimulus_ = nullptr;  // Given last.
   bool begun_ = false;
+  const NodeLog* at_reset_ = nullptr;  // Is being started.
   std::set<std::string> unseen_;
   bool unjudged_ = false;  // A line's window was too short.
   std::vector<NodeLog> nodes_;

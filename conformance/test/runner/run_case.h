@@ -43,7 +43,8 @@ struct Failure {
   Ticks from = 0;                         ///< The line's time, since the start of the case.
   Ticks to = 0;
   bool forbidden = false;  ///< The line says what must not be emitted.
-  /// The target died, hung or wrote nonsense after the line, which gave it something last.
+  /// The target died, hung or wrote nonsense after the line, which gave it something last; or at
+  /// the start of the case, whose place it is then.
   bool crash = false;
   std::string node = {};                    ///< The node under test, as the trace calls it.
   std::vector<std::string> suspected = {};  ///< Other rules that the line names.

@@ -414,6 +414,41 @@ TEST(RunCase, WhatKillsItBlamesTheRuleOfTheStimulus) {
   EXPECT_FALSE(before.failures[1].implied) << "a SHOULD kills nobody";
 }
 
+// A Ticker that dies when it is reset.
+class Stillborn : public Ticker {
+ public:
+  using Ticker::Ticker;
+  void reset(const machine::Config&) override { throw BrokenAtReset("was killed"); }
+};
+
+TEST(RunCase, ADeathAtResetBlamesTheFirstRuleOfItsNode) {
+  struct Death {
+    const char* lines;
+    const char* rule;
+  };
+  for (const Death& one :
+       {Death{"0..50 m2 !> app * [J4-SEQ]\n0..50 m5 !> rA * [J4-ACK]\n", "J4-ACK"},
+        Death{"0..50 m2 !> app * [J4-SEQ]\n0..50 m5 !> rA *\n", "J4-SEQ"}}) {
+    const trace::Parsed parsed = trace::parse(
+        std::string("%rtr 1\n%profile paper\n%node m2 mote id=2 iut\n%node m5 mote id=5 iut\n"
+                    "case x\n") +
+            one.lines,
+        "x.rtr");
+    ASSERT_EQ(parsed.errors(), "");
+    const CaseResult result =
+        run_case(parsed.file, parsed.file.cases.at(0),
+                 [](const trace::NodeHeader& header) -> std::unique_ptr<Target> {
+                   if (header.name == "m2") return std::make_unique<Ticker>(std::vector<Ticks>{30});
+                   return std::make_unique<Stillborn>(std::vector<Ticks>{});
+                 });
+    EXPECT_EQ(result.verdict, CaseVerdict::kFail);
+    ASSERT_EQ(result.failures.size(), 1u);
+    EXPECT_TRUE(result.failures[0].crash);
+    EXPECT_EQ(result.failures[0].node, "m5");
+    EXPECT_EQ(result.failures[0].requirements, std::vector<std::string>{one.rule});
+  }
+}
+
 // Records when it is reset.
 class Started : public Ticker {
  public:

@@ -25,6 +25,11 @@ struct Output {
 
 /// The target broke: it died, hangs, or sends nonsense. An error of the case.
 using TargetBroken = lines::Broken;
+/// It broke at the start of a node, after it had said who it is: a failure of the case.
+class BrokenAtReset : public TargetBroken {
+ public:
+  using TargetBroken::TargetBroken;
+};
 /// The target reports that it cannot do this. The case is skipped.
 class Unsupported : public std::runtime_error {
  public:

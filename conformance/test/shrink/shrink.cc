@@ -204,16 +204,39 @@ class Shrinker {
   std::size_t tried_ = 0;
 };
 
+// Returns whether the target died, hung or wrote nonsense, or did not even start again.
+bool died(const CaseResult& result) {
+  return std::ranges::any_of(result.failures, [](const auto& failure) { return failure.crash; });
+}
+bool played(const CaseResult& result) {
+  return result.verdict < CaseVerdict::kError || died(result);
+}
+bool broke(const CaseResult& result) {
+  return result.verdict == CaseVerdict::kFail || died(result);
+}
+bool kept(const CaseResult& result) {
+  return result.verdict == CaseVerdict::kPass || result.verdict == CaseVerdict::kWeak;
+}
+
+// How a case ended: a smaller trace that tells two apart has to end so, too.
+struct Ending {
+  bool kept = false;
+  std::vector<std::string> rules_of_death = {};
+  explicit Ending(const CaseResult& result) : kept(shrink::kept(result)) {
+    for (const runner::Failure& failure : result.failures) {
+      if (failure.crash) rules_of_death = failure.requirements;
+    }
+  }
+  friend bool operator==(const Ending&, const Ending&) = default;
+};
+
 struct Candidate {
   const trace::File* file;
   const trace::Case* one;
   std::size_t lines;
+  Ending of_a;
+  Ending of_b;
 };
-
-bool broke(const CaseResult& result) { return result.verdict == CaseVerdict::kFail; }
-bool kept(const CaseResult& result) {
-  return result.verdict == CaseVerdict::kPass || result.verdict == CaseVerdict::kWeak;
-}
 
 // Default first numbers, 0 and 65535: see runner::config_of.
 constexpr std::uint64_t kSeeds[] = {0, 58392, 58647};
@@ -283,7 +306,8 @@ StillShows fails_alike(const CaseResult& first, const Player& player,
 }
 
 bool differ(const CaseResult& a, const CaseResult& b) {
-  return (broke(a) && kept(b)) || (kept(a) && broke(b));
+  if (!played(a) || !played(b)) return false;
+  return died(a) != died(b) || (broke(a) && kept(b)) || (kept(a) && broke(b));
 }
 
 DifferenceSearch find_difference(const std::vector<const trace::File*>& files, const Player& a,
@@ -295,24 +319,32 @@ DifferenceSearch find_difference(const std::vector<const trace::File*>& files, c
       const trace::File alone = only(*file, one);
       const CaseResult of_a = play(alone, a);
       const CaseResult of_b = play(alone, b);
-      const auto played = [](const CaseResult& of) { return of.verdict < CaseVerdict::kError; };
       if (!played(of_a) || !played(of_b)) {
         ++search.skipped;
+        continue;
+      }
+      if (died(of_a) && died(of_b)) {
+        search.both_died.push_back(one.name);
         continue;
       }
       ++search.compared;
       if (!differ(of_a, of_b)) continue;
       search.different.push_back(one.name);
-      candidates.push_back({file, &one, one.lines().size()});
+      candidates.push_back({file, &one, one.lines().size(), Ending(of_a), Ending(of_b)});
     }
   }
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Candidate& x, const Candidate& y) { return x.lines < y.lines; });
-  candidates.resize(std::min(candidates.size(), shrunk_max));
-  const StillShows shows = [&](const trace::File& file) {
-    return differ(play(file, a), play(file, b));
-  };
+  if (candidates.size() > shrunk_max) {
+    candidates.erase(candidates.begin() + static_cast<std::ptrdiff_t>(shrunk_max),
+                     candidates.end());
+  }
   for (const Candidate& candidate : candidates) {
+    const StillShows shows = [&](const trace::File& file) {
+      const CaseResult of_a = play(file, a);
+      const CaseResult of_b = play(file, b);
+      return differ(of_a, of_b) && Ending(of_a) == candidate.of_a && Ending(of_b) == candidate.of_b;
+    };
     Shrunk shrunk = shrink(*candidate.file, *candidate.one, shows);
     if (shrunk.lines_before == 0) continue;  // It differed by chance.
     if (search.shortest && search.shortest->shrunk.lines <= shrunk.lines) continue;

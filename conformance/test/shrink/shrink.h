@@ -48,7 +48,8 @@ runner::CaseResult play(const trace::File& file, const Player& player);
 StillShows fails_alike(const runner::CaseResult& first, const Player& player,
                        const std::vector<Player>& references);
 
-/// Returns whether one keeps what the other breaks. Freedom within the rules is no difference.
+/// Returns whether one keeps what the other breaks, or dies where the other does not. Freedom
+/// within the rules is no difference.
 bool differ(const runner::CaseResult& a, const runner::CaseResult& b);
 
 struct Difference {
@@ -62,11 +63,13 @@ struct DifferenceSearch {
   std::optional<Difference> shortest;
   std::size_t compared = 0;            ///< Cases that both played.
   std::size_t skipped = 0;             ///< Cases that one of them cannot play or did not begin.
-  std::vector<std::string> different;  ///< Names of all cases that differ.
+  std::vector<std::string> different;  ///< Names of all cases that differ,
+  std::vector<std::string> both_died;  ///< and of those in which both died: none is compared.
 };
 
 /// Runs all cases on both, shrinks those that differ, beginning with the smallest and at most
-/// `shrunk_max` of them, and keeps the shortest. One that dies in a case breaks it.
+/// `shrunk_max` of them, and keeps the shortest. One that dies in a case, hangs or writes nonsense
+/// breaks it.
 DifferenceSearch find_difference(const std::vector<const trace::File*>& files, const Player& a,
                                  const Player& b, std::size_t shrunk_max = 8);
 

@@ -6,7 +6,9 @@
 
 #include "conformance/test/runner/run_case.h"
 #include "conformance/test/suite/cases.h"
+#include "conformance/test/suite/run.h"
 #include "conformance/test/targets/rct_text.h"
+#include "conformance/trace/print.h"
 #include "conformance/trace/protocol.h"
 
 namespace rubric::suite {
@@ -72,9 +74,45 @@ std::string try_canary(const SuiteCase& one, targets::Attachment& attachment) {
   return {};
 }
 
+// A number for `$seeded` that no seed gives, and as hard as any: two unlike bytes, the sign bit.
+constexpr std::string_view kUnseeded = "61607";
+
+std::string with_unseeded(const SuiteCase& one) {
+  trace::File file{.head = one.file->file.head};
+  file.cases.push_back(one.whole());
+  std::string text = trace::print(file);
+  const std::string name = fmt::format("${}", trace::kSeeded);
+  for (std::size_t at = 0; (at = text.find(name, at)) != text.npos;) {
+    text.replace(at, name.size(), kUnseeded);
+  }
+  return text;
+}
+
+// Returns what is wrong if it keeps a seeded case with the number that is the same in all runs, and
+// not with this run's: a recording has only the answers of its own run. A node that is wrong itself
+// fails both; what is random in it hardly fails all tries.
+std::string try_recording(const SuiteCase& one, targets::Attachment& attachment,
+                          std::optional<std::uint64_t> seed) {
+  constexpr int kTries = 3;
+  using runner::CaseVerdict;
+  const Cases same = Cases::of_text(with_unseeded(one), "canaries");
+  const CaseRun of_all = run_one(same.all().front(), attachment, {}, {});
+  if (of_all.result.verdict != CaseVerdict::kPass) return {};
+  const CaseRun of_seed = run_one(one, attachment, {}, seed);
+  if (of_seed.result.verdict != CaseVerdict::kFail) return {};
+  for (int i = 1; i < kTries; ++i) {
+    const CaseRun again = run_one(one, attachment, {}, seed);
+    if (again.result.verdict == CaseVerdict::kPass) return {};
+  }
+  return fmt::format(
+      "it keeps {} with the number {}, but not with the one of the seed {}, as a recording of "
+      "another run does: {}",
+      one.one->name, kUnseeded, seed.value_or(0), of_seed.result.failures.front().text);
+}
+
 }  // namespace
 
-std::string dishonesty(targets::Attachment& attachment) {
+std::string dishonesty(targets::Attachment& attachment, std::optional<std::uint64_t> seed) {
   const char* doing = "it does not start";
   try {
     const targets::Identity& identity = attachment.identity();
@@ -89,14 +127,23 @@ std::string dishonesty(targets::Attachment& attachment) {
       if (!plays(identity, one.roles().front())) continue;
       if (std::string wrong = try_canary(one, attachment); !wrong.empty()) return wrong;
     }
+    // In real time it would take as long again.
+    if (identity.real_time || !trace::protocol().has_machine) return {};
+    doing = "it breaks at a case with a number of the seed";
+    const Cases seeded = Cases::own("conformance/cases/seeded.rtr");
+    for (const SuiteCase& one : seeded.all()) {
+      if (!plays(identity, one.roles().front())) continue;
+      if (std::string wrong = try_recording(one, attachment, seed); !wrong.empty()) return wrong;
+    }
   } catch (const runner::TargetBroken& broken) {
     return fmt::format("{}: {}", doing, broken.what());
   }
   return {};
 }
 
-void require_honest(targets::Attachment& attachment, const std::string& target) {
-  if (const std::string wrong = dishonesty(attachment); !wrong.empty()) {
+void require_honest(targets::Attachment& attachment, const std::string& target,
+                    std::optional<std::uint64_t> seed) {
+  if (const std::string wrong = dishonesty(attachment, seed); !wrong.empty()) {
     throw runner::TargetBroken(fmt::format("{}: {}", target, wrong));
   }
 }

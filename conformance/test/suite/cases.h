@@ -37,8 +37,9 @@ class Cases {
   Cases() = default;
   Cases(Cases&&) = default;
   Cases& operator=(Cases&&) = default;
-  /// Returns the cases of conformance/cases as they were when the program was built.
-  static Cases own();
+  /// Returns the cases of conformance/cases, or of one of its files, as they were when the program
+  /// was built.
+  static Cases own(std::string_view file_name = {});
   /// Reads .rtr files, and folders of them, and keeps their text. Throws std::runtime_error with
   /// what is wrong, by file, line and column.
   static Cases of(const std::vector<std::string>& paths);

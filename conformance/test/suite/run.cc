@@ -190,7 +190,7 @@ ImplementationRun run(const std::string& target, const MakeAttachment& make, con
   const auto start = Clock::now();
   ImplementationRun out{.target = target};
   const std::unique_ptr<targets::Attachment> first = make();
-  out.dishonest = dishonesty(*first);
+  out.dishonest = dishonesty(*first, plan.seed);
   const std::string said = first->take_stderr();
   if (out.dishonest.empty()) {
     out.identity = first->identity();

@@ -20,6 +20,19 @@ using machine::Role;
 constexpr std::uint32_t kForwarderBaud = 57600;  // The slower common one; not reported.
 constexpr std::uint32_t kSerialBaud = 115200;
 
+/// Reports the death of a flawed machine as that of a process.
+class MachineTarget : public runner::SubjectTarget {
+ public:
+  using SubjectTarget::SubjectTarget;
+  void give(runner::Ticks now, const machine::Event& event) override {
+    try {
+      SubjectTarget::give(now, event);
+    } catch (const flaws::Died& death) {
+      throw runner::TargetBroken(fmt::format("`{}`: {}", command_of(event, now), death.what()));
+    }
+  }
+};
+
 /// The reference machine in this process, perhaps with a flaw.
 class MachineAttachment : public Attachment {
  public:
@@ -32,7 +45,7 @@ class MachineAttachment : public Attachment {
   }
   const Identity& identity() override { return identity_; }
   std::unique_ptr<runner::Target> target() override {
-    return std::make_unique<runner::SubjectTarget>(
+    return std::make_unique<MachineTarget>(
         std::make_unique<runner::Machine>(flaw_ ? flaw_->step : machine::step));
   }
   std::string honesty() override { return {}; }

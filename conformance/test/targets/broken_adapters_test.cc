@@ -1,5 +1,5 @@
-// Whatever a process does to us is an error of that case, in bounded time, and the next case
-// passes.
+// Whatever a process does to us fails its case by a rule, in bounded time, and the next case
+// passes. What does not even answer `hello` is an error.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -61,6 +61,9 @@ const Fault kFaults[] = {
     {"false_next", "it wrote something at 500 after `next -`"},
     {"refuses_time", "unsupported `until 0`: time"},
     {"unasked", "something follows the closing line"},
+    {"ends_at_reset", "ended with status 5"},
+    {"hangs_at_reset", "gave no answer in time"},
+    {"babbles_at_reset", "given 'done 0'"},
     {"newer_version", "speaks version 2 of the protocol", true},
     {"no_version", "is not a version, such as rct/1", true},
     {"no_roles", "it says no roles=", true},

@@ -102,6 +102,11 @@ UNASKED = {
     "half_a_line_unasked": lambda: put(b"note"),
     "ends_unasked": lambda: None,
 }
+AT_RESET = {
+    "ends_at_reset": lambda: os._exit(5),
+    "hangs_at_reset": sleep,
+    "babbles_at_reset": lambda: put(b"done 0\n"),
+}
 AT_BYE = {
     "bad_status_at_bye": lambda: os._exit(7),
     "killed_at_bye": lambda: os.kill(os.getpid(), signal.SIGKILL),
@@ -135,6 +140,9 @@ def main():
             continue
         if word in (b"call", b"rx") and FAULT in FAULTS:
             FAULTS[FAULT]()
+            sleep()
+        if word == b"reset" and FAULT in AT_RESET:
+            AT_RESET[FAULT]()
             sleep()
         if word == b"until" and FAULT == "refuses_time":
             put(b"unsupported time\n")

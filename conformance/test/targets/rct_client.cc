@@ -36,7 +36,12 @@ const Identity& RctClient::hello() {
 }
 
 Answer RctClient::ask(const Asked& asked, lines::Milliseconds longer) {
-  return converse(asked, options_.step_timeout + longer).answer();
+  try {
+    return converse(asked, options_.step_timeout + longer).answer();
+  } catch (const TargetBroken& error) {
+    if (asked.closing == "ready") throw runner::BrokenAtReset(error.what());
+    throw;
+  }
 }
 
 std::string RctClient::honesty() {

@@ -125,6 +125,17 @@ class Diff(ProgramTest):
         self.shows(("diff", "--target", "machine", "--target", "machine", "--profile", "paper",
                     "--profile", "deployed", "--rule", "J8"), "J8", code=1)
 
+    def test_a_death_at_reset(self):
+        """It tells the two apart, and where both die nothing is compared."""
+        dies = f"sed -u '/^reset .*id=5 .*seed=9 /Q' | {MACHINE}"
+        words = ["diff", "--cases", "j1.request", "--cases", "j1.new_number",
+                 "--seed", "9", "--target"]
+        self.shows((*words, "machine", "--target", dies), "; A, rubric_machine 1: pass\n",
+                   "; B, rubric_machine 1: fail: J1-REQUEST: `reset ", code=1)
+        code, out, err = run(*words, dies, "--target", dies)
+        self.assertEqual((code, out), (3, ""), err)
+        self.assertIn("2 not compared, since both died, hung or wrote nonsense\n  j1.", err)
+
     def test_a_target_and_itself(self):
         code, out, err = run("diff", "--target", "machine", "--target", MACHINE, "--cases", "j*")
         self.assertEqual((code, out), (0, ""), err)

@@ -103,7 +103,7 @@ TEST(Honesty, EachRoleHasACanary) {
                                              }),
                                              plan({"home.network"}));
     EXPECT_EQ(run.dishonest, "");
-    EXPECT_EQ(targets, 1) << "the canary, for the case needs all roles";
+    EXPECT_EQ(targets, 3) << "its canary and two with a number, for the case needs all roles";
   }
 }
 
@@ -129,15 +129,79 @@ TEST(Honesty, WhoLetsNoTimePassSpeaksNoRct) {
 
 TEST(Honesty, CanBeRequired) {
   FakeAttachment honest;
-  require_honest(honest, "./a");
+  require_honest(honest, "./a", std::nullopt);
   FakeAttachment liar;
   liar.make = parrot;
   try {
-    require_honest(liar, "./b");
+    require_honest(liar, "./b", std::nullopt);
     FAIL() << "it passed a canary";
   } catch (const runner::TargetBroken& error) {
     EXPECT_THAT(error.what(), HasSubstr("./b: canary.mote has to fail"));
   }
+}
+
+// What each node of a run began with and was brought, in order.
+struct Tape {
+  struct Node {
+    machine::Config config;
+    std::vector<std::vector<std::uint8_t>> frames;
+  };
+  std::vector<Node> nodes;
+  std::size_t next = 0;
+  bool plays = false;
+};
+
+// Answers as in the run that is on the tape, whatever it is given now.
+class Recorded : public runner::SubjectTarget {
+ public:
+  explicit Recorded(Tape& tape)
+      : SubjectTarget(std::make_unique<runner::Machine>()), tape_(tape), place_(tape.next++) {}
+  void reset(const machine::Config& config) override {
+    if (!tape_.plays) tape_.nodes.push_back({config, {}});
+    SubjectTarget::reset(known() ? tape_.nodes[place_].config : config);
+  }
+  void give(runner::Ticks now, const machine::Event& event) override {
+    machine::Event brought = event;
+    if (auto* const heard = std::get_if<machine::Heard>(&brought)) {
+      if (!known()) return;
+      auto& frames = tape_.nodes[place_].frames;
+      const Bytes now_given = heard->frame.payload;
+      if (!tape_.plays) frames.emplace_back(now_given.begin(), now_given.end());
+      if (heard_ == frames.size()) return;
+      const auto& then = frames[heard_++];
+      heard->frame.payload = Bytes(then.data(), then.size());
+    }
+    SubjectTarget::give(now, brought);
+  }
+
+ private:
+  bool known() const { return place_ < tape_.nodes.size(); }
+
+  Tape& tape_;
+  std::size_t place_;
+  std::size_t heard_ = 0;
+};
+
+TEST(Honesty, ARecordingPassesWithItsOwnSeedAlone) {
+  Tape tape;
+  const auto run_with = [&](std::uint64_t seed) {
+    Plan some = plan({"j4.accept", "n5.*"});
+    some.seed = seed;
+    tape.next = 0;
+    return suite::run("x", fake([&](FakeAttachment& one) {
+                        one.make = [&] { return std::make_unique<Recorded>(tape); };
+                      }),
+                      some);
+  };
+  EXPECT_EQ(run_with(7).dishonest, "");
+  tape.plays = true;
+  const ImplementationRun same = run_with(7);
+  EXPECT_EQ(same.dishonest, "");
+  EXPECT_EQ(count(same).at(CaseVerdict::kPass), same.cases.size());
+  const ImplementationRun other = run_with(8);
+  EXPECT_THAT(other.dishonest, HasSubstr("it keeps seeded.mote with the number 61607, but not with "
+                                         "the one of the seed 8, as a recording"));
+  EXPECT_TRUE(other.cases.empty());
 }
 
 TEST(Run, WhatBreaksIsAFailureOfItsCaseAlone) {
@@ -208,14 +272,14 @@ TEST(Run, WhatHappensBetweenCasesIsKept) {
   const ImplementationRun died =
       suite::run("x", fake([&](FakeAttachment& one) {
                    one.make = [&] {
-                     if (++made == 5) one.mishaps = {{"was killed by signal 9", true, ""}};
+                     if (++made == 11) one.mishaps = {{"was killed by signal 9", true, ""}};
                      return testing::machine_target();
                    };
                    one.last = {{"wrote 'x'", true, ""}};
                  }),
                  plan({"j4.*"}));
   ASSERT_EQ(died.outside.size(), 2U);
-  EXPECT_EQ(died.outside[0].when, "before " + died.cases.at(1).name) << "three canaries, a case";
+  EXPECT_EQ(died.outside[0].when, "before " + died.cases.at(1).name) << "nine canaries, a case";
   EXPECT_EQ(died.outside[1].when, "after its last case");
   EXPECT_EQ(count(died).at(CaseVerdict::kPass), died.cases.size());
   all.implementations = {died};
