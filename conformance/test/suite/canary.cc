@@ -100,6 +100,8 @@ std::string try_recording(const SuiteCase& one, targets::Attachment& attachment,
   if (of_all.result.verdict != CaseVerdict::kPass) return {};
   const CaseRun of_seed = run_one(one, attachment, {}, seed);
   if (of_seed.result.verdict != CaseVerdict::kFail) return {};
+  const runner::Failure& first = of_seed.result.failures.front();
+  if (first.crash) return {};  // A verdict of the cases that are chosen.
   for (int i = 1; i < kTries; ++i) {
     const CaseRun again = run_one(one, attachment, {}, seed);
     if (again.result.verdict == CaseVerdict::kPass) return {};
@@ -107,7 +109,7 @@ std::string try_recording(const SuiteCase& one, targets::Attachment& attachment,
   return fmt::format(
       "it keeps {} with the number {}, but not with the one of the seed {}, as a recording of "
       "another run does: {}",
-      one.one->name, kUnseeded, seed.value_or(0), of_seed.result.failures.front().text);
+      one.one->name, kUnseeded, seed.value_or(0), first.text);
 }
 
 }  // namespace
