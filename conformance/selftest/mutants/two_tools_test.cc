@@ -79,8 +79,7 @@ struct Recording {
   check::Options options;
 };
 
-// Returns the options for a capture; none if the case itself sends from an address under test, or
-// what no node may send.
+// Returns the options for a capture; none if the case itself sends from an address under test.
 std::optional<check::Options> options_of(const suite::CaseRun& run,
                                          const trace::Statement& stated) {
   check::Options out{.deployed = run.profile == "deployed", .stated = stated};
@@ -101,10 +100,8 @@ std::optional<check::Options> options_of(const suite::CaseRun& run,
   for (const trace::Line* line : log.lines()) {
     trace::AmFrame frame;
     if (line->op == trace::Op::kEmits || !line->bytes) continue;
-    if (!trace::parse_packet(*line->bytes, frame)) continue;
-    // In a capture nobody can know that it is the case which sends too much.
-    if (frame.payload.size() > machine::kAmPayloadMax) return std::nullopt;
     if (scope.link(line->link) != trace::LinkKind::kRadio) continue;
+    if (!trace::parse_packet(*line->bytes, frame)) continue;
     if (own.contains(frame.src)) return std::nullopt;
     out.testers.push_back(frame.src);
   }
