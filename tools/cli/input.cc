@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstring>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -535,18 +534,15 @@ void open_sources(InputOptions& options) {
   for (const std::string& name : names_of(options)) {
     try {
       const auto address = lines::parse_address(name);
-      if (!address && name != "-") {
-        require_file(name);
-        if (std::filesystem::is_directory(name)) unreadable(name + ": Is a directory");
-      }
+      if (!address && name != "-") require_file(name);
+      if (!address && std::filesystem::is_directory(name)) unreadable(name + ": Is a directory");
       if (!address || options.reconnect) continue;
-      OpenLine& open = options.open_lines[name];
+      auto& [line, air] = options.open_lines[name];
       if (address->kind == lines::Address::Kind::kAir) {
-        open.air = std::make_shared<lines::Air>(address->at);
-        open.air->open();
+        (air = std::make_shared<lines::Air>(address->at))->open();
       } else {
-        open.line = std::make_shared<lines::Line>(*address, options.listen_only);
-        open.line->open(std::chrono::steady_clock::now() + kReconnectEvery);
+        line = std::make_shared<lines::Line>(*address, options.listen_only);
+        line->open(std::chrono::steady_clock::now() + kReconnectEvery);
       }
     } catch (const lines::Broken& broken) {
       unreadable(name + ": " + broken.what());

@@ -198,13 +198,16 @@ class Recorded {
 
   void mark_forth() {
     interrupted();
+    // Among few frames the one that this acknowledges, with the same number, may not be captured.
+    const bool many = stamps_.size() >= kManyFrames;
+    const std::int64_t late_us = many ? kLateAckUs : kLongUs;
     std::int64_t longest = 0;
     std::int64_t second = 0;
     std::size_t at = 0;
     for (std::size_t i = 1; i < stamps_.size(); ++i) {
       if (suspect_[i] != What::kGood || suspect_[i - 1] == What::kAlone) continue;
       const std::int64_t gap = stamps_[i] - stamps_[i - 1];
-      if (gap > kLateAckUs && late_ack(i) && nothing_lost(i, UINT8_MAX)) suspect_[i] = What::kStep;
+      if (gap > late_us && late_ack(i) && nothing_lost(i, UINT8_MAX)) suspect_[i] = What::kStep;
       if (gap > longest) {
         second = longest;
         longest = gap;
@@ -213,7 +216,6 @@ class Recorded {
         second = std::max(second, gap);
       }
     }
-    const bool many = stamps_.size() >= kManyFrames;
     if (many && longest > kSilenceUs && longest > kSilences * second) suspect_[at] = What::kStep;
   }
 

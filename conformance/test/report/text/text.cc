@@ -56,7 +56,7 @@ std::vector<Row> rows_around(const CaseRun& one, const runner::Failure& failure)
   }
   std::vector<Row> rows;
   for (std::size_t i = at - std::min(at, kBefore); i < at; ++i) {
-    rows.push_back({*lines[i], breaks && i + 1 == at});
+    rows.push_back({*lines[i], (breaks || failure.crash) && i + 1 == at});
   }
   if (!breaks && !failure.expected.empty()) rows.push_back({std::nullopt, true});
   for (std::size_t i = at; i < std::min(at + kAfter, lines.size()); ++i) {
@@ -84,8 +84,9 @@ std::string window_text(const runner::Failure& failure) {
                                     : fmt::format("@{}..{}", failure.from, failure.to);
 }
 
-// Returns lines of the log before and after the failure; those that break a rule, or the place of
-// a missing one, are marked with ">". Each line begins with `indent` blanks.
+// Returns lines of the log before and after the failure; those that break a rule or were the last
+// before a death, or the place of a missing one, are marked with ">". Each line begins with
+// `indent` blanks.
 std::string log_around(const CaseRun& one, const runner::Failure& failure, std::size_t indent,
                        std::size_t width) {
   std::string out;
@@ -289,7 +290,7 @@ class Story {
     const Failure& failure = one.result.failures.front();
     out_ += fmt::format("{}Log, in ticks of 1/{} s:\n", kIndent, machine::kTicksPerSecond);
     out_ += log_around(one, failure, 2 * kIndent.size(), options_.width);
-    if (failure.expected.empty()) return;
+    if (failure.expected.empty() && !failure.crash) return;
     out_ += '\n' + chart_around(one, failure, 2 * kIndent.size(), options_.width);
   }
 
