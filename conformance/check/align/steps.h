@@ -17,14 +17,15 @@
 //   nearly would be chance; it then lies between them.
 // - Else the clock stepped back, and how much time passed is unknown. Where either could be true,
 //   it stepped twice.
-// - Forth: an acknowledgement of the link that comes kLateAckUs after its frame, with nothing of
-//   the air between the two; a silence of all taps without which an effect, such as a
-//   forward, came in time after its cause, and which is long, or before which no sender's DSNs have
-//   a gap (more than kInterruptedMax, or one for each kFramesEach frames of a short file, are slow
-//   nodes: then "in time" is what leaves so many); or, in a file of kManyFrames, a silence that is
-//   longer than kSilenceUs and by far than any other (kSilences). Silences that would put a
-//   repeated ack_join in time must be among as many longest ones of the file: nothing forces a mote
-//   to repeat one, so that one that is late between ordinary silences is the mote's doing.
+// - Forth: an acknowledgement of the link that comes kLateAckUs after its frame (kLongUs in a file
+//   of fewer than kManyFrames), with nothing of the air between the two; a silence of all taps
+//   without which an effect, such as a forward, came in time after its cause, and which is long, or
+//   before which no sender's DSNs have a gap (more than kInterruptedMax, or one for each
+//   kFramesEach frames of a short file, are slow nodes: then "in time" is what leaves so many); or,
+//   in a file of kManyFrames, a silence that is longer than kSilenceUs and by far than any other
+//   (kSilences). Silences that would put a repeated ack_join in time must be among as many longest
+//   ones of the file: nothing forces a mote to repeat one, so that one that is late between
+//   ordinary silences is the mote's doing.
 //
 // Cannot know: a step forth that looks like an ordinary silence, and one back that is shorter than
 // the silence in which it happened. Where a clock stepped forth elsewhere, response times are

@@ -457,8 +457,8 @@ std::uint16_t MoteJoins::sink_of(std::uint16_t island) const {
 }
 
 // Returns whether the offer that the mote accepts was captured out of order: before the request,
-// of which only the link's copy was captured, or as such a copy after the ack_join. What escaped
-// before a copy leaves no gap in the DSNs.
+// of which only the link's copy was captured, or as such a copy after the ack_join. The first of
+// two copies leaves no gap in the DSNs where it is not captured.
 bool MoteJoins::may_take_copy(std::uint16_t mote, const MoteHypothesis& h, const AckJoin& ack,
                               std::int64_t now_us) {
   const auto is_offer = [&](const Observation& seen) {

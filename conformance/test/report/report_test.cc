@@ -190,7 +190,7 @@ TEST(Report, ARunThatIsIncompleteAsAWholeIsNotASuccess) {
   EXPECT_EQ(junit_report(run).find("nothing was decided"), std::string::npos);
 }
 
-// What nobody saw is open, unless a case that names the rule decides it.
+// A rule that was not seen kept or broken is open, unless a case that names it decides it.
 TEST(Report, ARuleThatIsLeftOpenIsNotASuccess) {
   SuiteRun run = every_kind();
   run.stale.clear();

@@ -68,8 +68,7 @@ std::string access_text(const ImplementationRun& implementation) {
   if (cases == 0) return {};
   return fmt::format(
       "{} would pass with --state channel_access={}: state it if the radio waits for a free "
-      "channel "
-      "before it sends (decision 128).",
+      "channel before it sends (decision 128).",
       text::counted(cases, "failed case"), access);
 }
 

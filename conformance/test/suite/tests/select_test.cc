@@ -133,7 +133,7 @@ TEST(Cases, TheProgramCarriesThoseOfTheProject) {
   for (std::size_t i = 0; i < own.all().size(); ++i) {
     EXPECT_EQ(own.all()[i].one->name, read.all()[i].one->name);
     EXPECT_EQ(own.all()[i].file->file_name, read.all()[i].file->file_name);
-    // What is read again when it is run is as it was.
+    // A case that is read again when it is run is the same as before.
     const trace::Case whole = own.all()[i].whole();
     const trace::Case again = read.all()[i].whole();
     EXPECT_EQ(whole, again);
